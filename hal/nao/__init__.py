@@ -1,0 +1,1 @@
+"""The NAO's own numbers: joints, links, postures, head limits, feet and cameras."""

@@ -1,0 +1,54 @@
+"""What a simulated robot offers beyond a real one: truth, and time that can be stepped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.protocols import Robot
+from hal.scenario import Scenario
+from hal.types import PlanarMotion
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """Where things really are at `stamp_ns`, in the world (z up, floor at 0).
+
+    `base`: the frame between the feet. `T_world_object` and `T_world_camera`: (4, 4); the object's
+    axes are x to the right and y up along it, z out of its face; a cylinder's z is horizontal
+    towards the camera. The camera's are x right, y down, z forward.
+    """
+
+    stamp_ns: int
+    base: PlanarMotion
+    T_world_object: NDArray[np.float64]
+    T_world_camera: NDArray[np.float64]
+
+
+@runtime_checkable
+class SimulatedRobot(Robot, Protocol):
+    """A robot in a simulated world."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """The world it stands in."""
+        ...
+
+    def truth(self) -> Truth:
+        """The present truth."""
+        ...
+
+    def place(self, pose: PlanarMotion) -> None:
+        """Put the robot somewhere, standing still, head straight, as a person would carry it."""
+        ...
+
+    def advance(self, until_ns: int) -> None:
+        """Let the world run until then (lock-step only)."""
+        ...
+
+    def room_view(self, width: int, height: int) -> NDArray[np.uint8]:
+        """The scene from a fixed place in the room, (height, width, 3) uint8 RGB."""
+        ...

@@ -1,0 +1,1 @@
+"""The commands of `naod`, a module each."""
