@@ -21,14 +21,14 @@ class _Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     pass
 
 
-class RobotSection(_Section):
+class RobotSection(_Section, frozen=True):
     """`start`: x in m, y in m, yaw in degrees."""
 
     version: NaoVersion = "v6"
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-class ThingSection(_Section):
+class ThingSection(_Section, frozen=True):
     """A cylinder or a rectangle in the world; `position` is that of its centre, in m.
 
     It faces the way its yaw points: 0 is along the world's x.
@@ -44,13 +44,13 @@ class ThingSection(_Section):
     yaw_deg: float = 180.0
 
 
-class GoalSection(_Section):
+class GoalSection(_Section, frozen=True):
     """`demonstrate_at`: x in m, y in m, yaw in degrees; None for 0.45 m before the object."""
 
     demonstrate_at: tuple[float, float, float] | None = None
 
 
-class SceneSection(_Section):
+class SceneSection(_Section, frozen=True):
     """`light` 1 is normal; `light_drift` is its relative change per minute."""
 
     table: bool = True
@@ -59,7 +59,7 @@ class SceneSection(_Section):
     light_drift: float = 0.0
 
 
-class CameraSection(_Section):
+class CameraSection(_Section, frozen=True):
     """`noise_std` in 8-bit levels, `drop_rate` as a fraction of frames."""
 
     noise_std: NotNegative = 2.0
@@ -68,7 +68,7 @@ class CameraSection(_Section):
     latency_s: NotNegative = 0.05
 
 
-class WalkSection(_Section):
+class WalkSection(_Section, frozen=True):
     """`slip_std` relative, per move; `yaw_drift` in rad per metre; `push` in N s."""
 
     model: Literal["kinematic", "dynamic"] = "kinematic"
@@ -77,13 +77,13 @@ class WalkSection(_Section):
     push: NotNegative = 0.0
 
 
-class LimitsSection(_Section):
+class LimitsSection(_Section, frozen=True):
     """`time_s`: simulated time after which an approach counts as failed."""
 
     time_s: Positive = 120.0
 
 
-class Scenario(_Section):
+class Scenario(_Section, frozen=True):
     """A whole SCENARIO.toml."""
 
     robot: RobotSection = RobotSection()

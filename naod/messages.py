@@ -21,7 +21,7 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     """Base of all messages: immutable, fields by name, nothing unknown."""
 
 
-class WalkCommand(Message):
+class WalkCommand(Message, frozen=True):
     """`walk/command`. velocity: m/s and rad/s, ends after `ttl_ms` unless renewed.
 
     step: m and rad, from where the base is now. stop: x, y and yaw do not matter.
@@ -36,7 +36,7 @@ class WalkCommand(Message):
     ttl_ms: TtlMs = 300
 
 
-class WalkState(Message):
+class WalkState(Message, frozen=True):
     """`walk/state`. velocity in m/s and rad/s; odometry in m and rad; `refused` says why."""
 
     seq: int
@@ -50,7 +50,7 @@ class WalkState(Message):
     odometry: tuple[float, float, float]
 
 
-class HeadCommand(Message):
+class HeadCommand(Message, frozen=True):
     """`head/command`: angles in rad."""
 
     source: Name
@@ -60,7 +60,7 @@ class HeadCommand(Message):
     ttl_ms: TtlMs = 300
 
 
-class EgoMessage(Message):
+class EgoMessage(Message, frozen=True):
     """The ego-cylinder, equation 6: distance, azimuth, height, and azimuth of the object's z."""
 
     rho_m: float
@@ -69,8 +69,8 @@ class EgoMessage(Message):
     phi_rad: float
 
 
-class TargetMessage(Message):
-    """What is known of the object; `sigma_m` is the standard deviation of its place on the floor."""
+class TargetMessage(Message, frozen=True):
+    """What is known of the object; `sigma_m` is the standard deviation of its place."""
 
     found: bool
     age_s: float | None
@@ -78,7 +78,7 @@ class TargetMessage(Message):
     sigma_m: float | None
 
 
-class ErrorMessage(Message):
+class ErrorMessage(Message, frozen=True):
     """From the base to the goal, in the base frame: m, m, rad."""
 
     x_m: float
@@ -86,7 +86,7 @@ class ErrorMessage(Message):
     yaw_rad: float
 
 
-class StateMessage(Message):
+class StateMessage(Message, frozen=True):
     """`state`: what the tracker does and knows."""
 
     seq: int
@@ -99,7 +99,7 @@ class StateMessage(Message):
     faults: tuple[str, ...]
 
 
-class EventMessage(Message):
+class EventMessage(Message, frozen=True):
     """`event`: something happened, once."""
 
     stamp_ns: int
@@ -107,7 +107,7 @@ class EventMessage(Message):
     message: str
 
 
-class TruthMessage(Message):
+class TruthMessage(Message, frozen=True):
     """`sim/truth`: base x, y (m), yaw (rad); object x, y, z (m), yaw (rad)."""
 
     stamp_ns: int
@@ -115,7 +115,7 @@ class TruthMessage(Message):
     object: tuple[float, float, float, float]
 
 
-class DiagnosticsMessage(Message):
+class DiagnosticsMessage(Message, frozen=True):
     """`diagnostics`, 1 Hz: the loop's period and latency in ms, counts since start-up."""
 
     stamp_ns: int

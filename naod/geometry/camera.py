@@ -48,7 +48,7 @@ class PinholeCamera(
             return (pixels - (self.cx, self.cy)) / (self.fx, self.fy)
         points = np.ascontiguousarray(pixels, dtype=np.float64).reshape(-1, 1, 2)
         criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 1e-10)
-        out = cv2.undistortPointsIter(points, self.K, self.distortion_array, None, None, criteria)
+        out = cv2.undistortPoints(points, self.K, self.distortion_array, criteria=criteria)
         return np.asarray(out, dtype=np.float64).reshape(-1, 2)
 
     def project(self, points_in_camera: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,0 +1,1 @@
+"""Goals shown by demonstration, and look-then-move towards them."""

@@ -1,0 +1,1 @@
+"""zenoh: keys, session, publishing, remote calls."""

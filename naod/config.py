@@ -1,0 +1,161 @@
+"""The daemon's configuration file. Every key has a default; an unknown one is an error."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from hal.types import CameraName, NaoVersion
+from naod.files import read_toml
+from naod.pose.objects import ObjectShape
+
+Positive = Annotated[float, Meta(gt=0.0)]
+NotNegative = Annotated[float, Meta(ge=0.0)]
+Fraction = Annotated[float, Meta(ge=0.0, le=1.0)]
+Count = Annotated[int, Meta(gt=0)]
+RobotName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,32}$")]
+
+
+class _Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    pass
+
+
+class RobotConfig(_Section, frozen=True):
+    """Which robot; `state_folder` keeps goals, the colour model and the latched estop."""
+
+    name: RobotName = "nao"
+    version: NaoVersion = "v6"
+    backend: Literal["sim", "naoqi", "lola"] = "sim"
+    state_folder: str = ""
+
+
+class SimConfig(_Section, frozen=True):
+    """`scenario`: a SCENARIO.toml; empty for the can on the table."""
+
+    scenario: str = ""
+    seed: Annotated[int, Meta(ge=0)] = 0
+
+
+class NaoqiConfig(_Section, frozen=True):
+    """Where NAOqi listens."""
+
+    url: str = "tcp://127.0.0.1:9559"
+    user: str = "nao"
+
+
+class LolaConfig(_Section, frozen=True):
+    """Where LoLA listens."""
+
+    socket: str = "/tmp/robocup"
+
+
+class CameraConfig(_Section, frozen=True):
+    """Camera, its intrinsics in pixels if calibrated, and this head's correction.
+
+    `correction_deg`: roll, pitch and yaw that turn the nominal camera into the real one.
+    """
+
+    which: CameraName = "top"
+    device: str = ""
+    width: Literal[160, 320, 640, 1280] = 640
+    height: Literal[120, 240, 480, 960] = 480
+    fps: Annotated[int, Meta(ge=1, le=30)] = 15
+    fx: Positive | None = None
+    fy: Positive | None = None
+    cx: float | None = None
+    cy: float | None = None
+    distortion: tuple[float, float, float, float, float] | None = None
+    correction_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+class BusConfig(_Section, frozen=True):
+    """zenoh endpoints; loopback unless told otherwise, no multicast scouting unless told."""
+
+    listen: tuple[str, ...] = ("tcp/127.0.0.1:7447",)
+    connect: tuple[str, ...] = ()
+    multicast: bool = False
+
+
+class SegmentationConfig(_Section, frozen=True):
+    """The energy (equation 3) and how it is brought down."""
+
+    width: Literal[80, 160, 320] = 160
+    beta: NotNegative = 1.0
+    background_energy: Positive = 16.6
+    settled: NotNegative = 1e-3
+    sweeps_max: Count = 50
+    pixels_min: Count = 12
+
+
+class GazeConfig(_Section, frozen=True):
+    """Head centring: share of the error turned at once, and when it counts as centred."""
+
+    gain: Annotated[float, Meta(gt=0.0, le=1.0)] = 0.7
+    tolerance_deg: Positive = 3.0
+    speed_deg_s: Positive = 120.0
+
+
+class ApproachConfig(_Section, frozen=True):
+    """Look-then-move: how far at once, and when the goal counts as reached."""
+
+    estimator: Literal["exact", "paper"] = "exact"
+    step_max_m: Positive = 0.25
+    turn_max_deg: Positive = 30.0
+    tolerance_m: Positive = 0.010
+    tolerance_deg: Positive = 1.0
+    looks: Count = 5
+    settle_s: NotNegative = 0.3
+    lost_s: Positive = 5.0
+    moves_max: Count = 60
+
+
+class WalkConfig(_Section, frozen=True):
+    """Limits that the walk server holds, whoever asks."""
+
+    speed_max_m_s: Positive = 0.12
+    turn_max_rad_s: Positive = 0.6
+    step_max_m: Positive = 0.40
+    step_turn_max_rad: Positive = 1.6
+
+
+class LogConfig(_Section, frozen=True):
+    """What goes to stderr."""
+
+    level: Literal["debug", "info", "warning", "error"] = "info"
+
+
+class DaemonConfig(_Section, frozen=True):
+    """The whole file."""
+
+    robot: RobotConfig = RobotConfig()
+    sim: SimConfig = SimConfig()
+    naoqi: NaoqiConfig = NaoqiConfig()
+    lola: LolaConfig = LolaConfig()
+    camera: CameraConfig = CameraConfig()
+    bus: BusConfig = BusConfig()
+    object: ObjectShape | None = None
+    segmentation: SegmentationConfig = SegmentationConfig()
+    gaze: GazeConfig = GazeConfig()
+    approach: ApproachConfig = ApproachConfig()
+    walk: WalkConfig = WalkConfig()
+    log: LogConfig = LogConfig()
+
+
+def load_config(path: Path | None) -> DaemonConfig:
+    """Read the daemon's file; defaults when there is none. Raises InputError."""
+    return DaemonConfig() if path is None else read_toml(path, DaemonConfig)
+
+
+def state_folder(config: DaemonConfig) -> Path:
+    """Where goals and colour models are kept: configured, systemd's, or the user's."""
+    if config.robot.state_folder:
+        return Path(config.robot.state_folder).expanduser()
+    systemd = os.environ.get("STATE_DIRECTORY")
+    if systemd:
+        return Path(systemd.split(":")[0])
+    home = os.environ.get("XDG_STATE_HOME") or "~/.local/state"
+    return Path(home).expanduser() / "naod" / config.robot.name

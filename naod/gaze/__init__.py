@@ -1,0 +1,1 @@
+"""Turning the head so that the object stays centred."""

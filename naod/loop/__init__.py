@@ -1,0 +1,1 @@
+"""The loop's step: a pure function of state, observation and time."""

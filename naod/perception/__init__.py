@@ -1,0 +1,1 @@
+"""Colour model, segmentation, blob, box and edges: from a YUYV picture to an outline."""

@@ -1,0 +1,1 @@
+"""The object's pose in the camera's frame, from its outline: exact, and as the paper prints it."""

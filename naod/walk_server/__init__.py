@@ -1,0 +1,1 @@
+"""The robot's side of `walk/command`: arbitration, limits, time to live."""
