@@ -1,0 +1,61 @@
+"""The loop's step: (state, observation, now) to (state, commands), without side effects.
+
+The daemon, the lock-step simulation and the replay of a recording all run this function.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from naod.loop.approach import approach
+from naod.loop.equipment import Equipment, Sighting
+from naod.loop.learning import gather, show_goal
+from naod.loop.looking import FRESH_NS, gaze, stand
+from naod.loop.outbox import Outbox
+from naod.loop.report import state_message, with_error
+from naod.loop.requests import handle
+from naod.loop.state import LoopState
+from naod.loop.types import Commands, Observation
+
+__all__ = ["FRESH_NS", "Equipment", "LoopState", "look_at", "step"]
+
+
+def step(
+    equipment: Equipment, state: LoopState, seen: Observation, now_ns: int
+) -> tuple[LoopState, Commands]:
+    """One tick. `now_ns` is the robot's clock."""
+    sighting = look_at(equipment, state, seen)
+    return decide(equipment, state, seen, sighting, now_ns)
+
+
+def look_at(equipment: Equipment, state: LoopState, seen: Observation) -> Sighting | None:
+    """The object in the picture of this tick, if there is a picture and a model to look with."""
+    if seen.frame is None or state.model is None or state.mode == "idle":
+        return None
+    return equipment.sight(state.model, seen.frame, seen.body)
+
+
+def decide(
+    equipment: Equipment,
+    state: LoopState,
+    seen: Observation,
+    sighting: Sighting | None,
+    now_ns: int,
+) -> tuple[LoopState, Commands]:
+    """What to do about it."""
+    out = Outbox(now_ns)
+    for request in seen.requests:
+        state = handle(equipment, state, seen, request, out)
+    state = stand(state, seen.walk, now_ns)
+    if seen.frame is not None:
+        state = gather(replace(state, frame_ns=seen.frame.stamp_ns), seen.frame, out)
+    if state.mode != "idle" and state.model is not None:
+        state = gaze(equipment, state, sighting, seen.frame is not None, out)
+        state = with_error(state)
+        state = show_goal(equipment, state, out)
+        if state.mode == "approach":
+            state = approach(equipment, state, seen, out)
+    state = replace(state, seq=state.seq + 1)
+    speed = math.radians(equipment.config.gaze.speed_deg_s)
+    return state, out.commands(state_message(state, seen, now_ns), speed)

@@ -1,0 +1,99 @@
+"""Gaze: keep the object centred, look for it when it is gone, take looks while standing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from hal.types import HeadAngles
+from naod.gaze.centring import head_towards, is_centred
+from naod.gaze.search import DWELL_S, PLACES, search_place
+from naod.localisation.looks import Look
+from naod.loop.equipment import Equipment, Sighting
+from naod.loop.outbox import Outbox
+from naod.loop.state import LoopState, Target
+from naod.messages import WalkState
+
+SEARCH_S = 2.5 * DWELL_S * len(PLACES)
+"""After so long the head rests; the object is still looked for where it points."""
+FRESH_NS = 500_000_000
+"""A target seen within this time counts as in view."""
+
+
+def stand(state: LoopState, walk: WalkState, now_ns: int) -> LoopState:
+    """Since when the robot stands still; looks from before a movement are dropped."""
+    if walk.moving or walk.fallen:
+        return replace(state, still_since_ns=None, looks=())
+    if state.still_since_ns is None:
+        # what was lost on the way is looked for from here, from the first place on
+        search_from = None if state.search_from_ns is None else now_ns
+        return replace(state, still_since_ns=now_ns, search_from_ns=search_from)
+    return state
+
+
+def gaze(
+    equipment: Equipment, state: LoopState, sighting: Sighting | None, fresh: bool, out: Outbox
+) -> LoopState:
+    """Turn the head: towards what is seen, or on to the next place of the search.
+
+    `fresh` says whether a picture came at this tick at all.
+    """
+    if sighting is not None:
+        return _centre(equipment, state, sighting, out)
+    if state.target is not None and out.now_ns - state.target.seen_ns <= FRESH_NS:
+        return state
+    if not fresh and state.search_from_ns is None:
+        return state
+    return _search(state, out)
+
+
+def _centre(equipment: Equipment, state: LoopState, sighting: Sighting, out: Outbox) -> LoopState:
+    wanted = head_towards(
+        sighting.ray_in_camera, sighting.T_torso_camera, sighting.head, equipment.camera_name, 1.0
+    )
+    gain = equipment.config.gaze.gain
+    now = sighting.head
+    tolerance = math.radians(equipment.config.gaze.tolerance_deg)
+    centred = is_centred(sighting.ray_in_camera, now, wanted, tolerance)
+    if not is_centred(sighting.ray_in_camera, now, wanted, 0.3 * tolerance):
+        out.head = HeadAngles(
+            now.yaw_rad + gain * (wanted.yaw_rad - now.yaw_rad),
+            now.pitch_rad + gain * (wanted.pitch_rad - now.pitch_rad),
+        )
+    if state.search_from_ns is not None and state.target is not None:
+        out.event("found", "the object is in view again")
+    target = Target(sighting.stamp_ns, sighting.look or _last_look(state), wanted)
+    state = replace(state, target=target, search_from_ns=None)
+    return _take_look(equipment, state, sighting, centred)
+
+
+def _take_look(
+    equipment: Equipment, state: LoopState, sighting: Sighting, centred: bool
+) -> LoopState:
+    """Keep a look that was taken whole, centred, and after the robot came to rest (S3)."""
+    settle_ns = int(equipment.config.approach.settle_s * 1e9)
+    since = state.still_since_ns
+    if since is None or sighting.stamp_ns < since + settle_ns:
+        return state
+    if sighting.look is None or not centred or sighting.pose is None or sighting.pose.clipped:
+        return replace(state, phase="centre") if state.phase == "look" else state
+    kept = (*state.looks, sighting.look)[-equipment.config.approach.looks :]
+    return replace(state, looks=kept)
+
+
+def _search(state: LoopState, out: Outbox) -> LoopState:
+    now = out.now_ns
+    if state.search_from_ns is None:
+        if state.target is not None:
+            out.event("lost", "the object is out of view")
+            state = replace(state, lost_count=state.lost_count + 1)
+        state = replace(state, search_from_ns=now, looks=())
+    searching_s = (now - (state.search_from_ns or now)) / 1e9
+    first = state.target.place if state.target else None
+    if state.still_since_ns is not None and searching_s < SEARCH_S:
+        out.head = search_place(first, searching_s)
+    return state
+
+
+def _last_look(state: LoopState) -> Look | None:
+    return state.target.look if state.target else None
