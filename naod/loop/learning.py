@@ -13,7 +13,7 @@ from naod.loop.equipment import Equipment
 from naod.loop.outbox import Outbox
 from naod.loop.state import Learning, LoopState
 from naod.loop.types import Label
-from naod.perception.colour_model import learn
+from naod.perception.colour_model import Region, learn
 
 FRAMES = 10
 """The paper's n."""
@@ -48,7 +48,7 @@ def gather(state: LoopState, frame: Frame, out: Outbox) -> LoopState:
         return replace(state, learning=replace(learning, frames=frames))
     region = learning.region
     try:
-        box = (region.x, region.y, region.width, region.height)
+        box = Region(region.x, region.y, region.width, region.height)
         model = learn([f.yuyv for f in frames], box)
     except InputError as error:
         out.refuse(learning.ticket, "bad_region", str(error))

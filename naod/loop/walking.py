@@ -58,6 +58,7 @@ def _outcome(move: Move, walk: WalkState, since_ns: int) -> str | None:
         if not walk.moving:
             return "done"
         return "the step took too long" if since_ns > TOO_LONG_NS else None
-    if walk.refused and since_ns > NOT_BEGUN_NS // 5:
+    ours = walk.last_source == SOURCE or (walk.refused or "").startswith(f"{SOURCE}:")
+    if walk.refused and ours and since_ns > NOT_BEGUN_NS // 5:
         return walk.refused
     return "the walk did not begin" if since_ns > NOT_BEGUN_NS else None
