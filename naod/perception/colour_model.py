@@ -2,9 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
+
 import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.yuyv import yuv_from_yuyv
+from naod.errors import InputError
+from naod.files import read_toml, write_toml
 
 Triple = tuple[float, float, float]
+
+PIXELS_MIN = 16
+"""A covariance of three channels from fewer pixels says nothing."""
+
+STD_FLOOR = 3.0
+"""Least standard deviation along any direction, 8-bit levels: sensor noise is never below it."""
+
+
+class Region(msgspec.Struct, frozen=True):
+    """A rectangle of pixels: left column, upper row, width, height."""
+
+    x: int
+    y: int
+    width: int
+    height: int
 
 
 class ColourModel(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -12,3 +36,67 @@ class ColourModel(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     mean: Triple
     covariance: tuple[Triple, Triple, Triple]
+
+
+def learn(frames: Sequence[NDArray[np.uint8]], region: Region) -> ColourModel:
+    """The colour inside `region` of every frame.
+
+    Frames are YUYV (H, W, 2) or YUV (H, W, 3), uint8. The mean is that of all frames; the
+    covariance is that of single-frame pixels about it, not of averaged frames, because single
+    pixels are what segmentation meets. Its eigenvalues are at least STD_FLOOR squared. Raises
+    InputError when the region is outside a frame, too small, or one value throughout.
+    """
+    if not frames:
+        raise InputError("no frame to learn the colour from")
+    pixels = np.concatenate([_pixels(frame, region) for frame in frames])
+    if (pixels == pixels[0]).all():
+        y, u, v = (int(c) for c in pixels[0])
+        raise InputError(
+            f"region {_text(region)}: every pixel is the same, YUV ({y}, {u}, {v}); "
+            "a blank or saturated area has no colour to learn"
+        )
+    covariance = np.cov(pixels.astype(np.float64), rowvar=False)
+    values, vectors = np.linalg.eigh(covariance)
+    floored = (vectors * np.maximum(values, STD_FLOOR**2)) @ vectors.T
+    return model_of(pixels.mean(axis=0, dtype=np.float64), floored)
+
+
+def model_of(mean: NDArray[np.float64], covariance: NDArray[np.float64]) -> ColourModel:
+    """The struct from arrays (3,) and (3, 3)."""
+    rows = [(float(a), float(b), float(c)) for a, b, c in (covariance + covariance.T) / 2.0]
+    y, u, v = (float(c) for c in mean)
+    return ColourModel(mean=(y, u, v), covariance=(rows[0], rows[1], rows[2]))
+
+
+def load_model(path: Path) -> ColourModel:
+    """Read MODEL.toml. Raises InputError that names the file and what is wrong."""
+    model = read_toml(path, ColourModel)
+    values = np.array([model.mean, *model.covariance])
+    covariance = values[1:]
+    if not np.isfinite(values).all():
+        raise InputError(f"{path}: mean and covariance must be finite")
+    if not np.allclose(covariance, covariance.T, rtol=1e-6, atol=1e-6):
+        raise InputError(f"{path}: covariance is not symmetric")
+    if np.linalg.eigvalsh(covariance)[0] <= 0.0:
+        raise InputError(f"{path}: covariance is not positive definite")
+    return model
+
+
+def save_model(path: Path, model: ColourModel) -> None:
+    """Write MODEL.toml, whole or not at all. Raises InputError."""
+    write_toml(path, model)
+
+
+def _pixels(frame: NDArray[np.uint8], region: Region) -> NDArray[np.uint8]:
+    height, width = frame.shape[:2]
+    x, y, right, bottom = region.x, region.y, region.x + region.width, region.y + region.height
+    if region.width < 1 or region.height < 1 or region.width * region.height < PIXELS_MIN:
+        raise InputError(f"region {_text(region)}: needs at least {PIXELS_MIN} pixels")
+    if x < 0 or y < 0 or right > width or bottom > height:
+        raise InputError(f"region {_text(region)}: outside the {width}x{height} picture")
+    yuv = yuv_from_yuyv(frame) if frame.shape[2] == 2 else frame
+    return yuv[y:bottom, x:right].reshape(-1, 3)
+
+
+def _text(region: Region) -> str:
+    return f"{region.x},{region.y},{region.width},{region.height}"
