@@ -5,6 +5,7 @@ A file is written beside its place and moved there, so it is there whole or not 
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import tempfile
@@ -40,11 +41,30 @@ def read_toml(path: Path, kind: type[T]) -> T:
 def parse_toml(text: str, kind: type[T], source: str) -> T:
     """TOML text as `kind`. Raises InputError with source, line and key."""
     try:
-        return msgspec.toml.decode(text, type=kind)
-    except msgspec.ValidationError as error:
-        raise InputError(_explain(text, str(error), source)) from None
+        tree = msgspec.toml.decode(text)
     except msgspec.DecodeError as error:
         raise InputError(f"{source}: not valid TOML: {_one_line(str(error))}") from None
+    odd = _not_finite(tree, ())
+    if odd is not None:
+        line = _line_of(text, list(odd))
+        raise InputError(f"{source}:{line or 1}: {'.'.join(odd)}: is not a finite number")
+    try:
+        return msgspec.convert(tree, kind)
+    except msgspec.ValidationError as error:
+        raise InputError(_explain(text, str(error), source)) from None
+
+
+def _not_finite(tree: object, path: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Path of the first number that is NaN or infinite; TOML can write both, we can use neither."""
+    if isinstance(tree, float) and not math.isfinite(tree):
+        return path
+    if isinstance(tree, dict):
+        found = (_not_finite(value, (*path, key)) for key, value in tree.items())
+    elif isinstance(tree, list):
+        found = (_not_finite(value, path) for value in tree)
+    else:
+        return None
+    return next((odd for odd in found if odd is not None), None)
 
 
 def write_whole(path: Path, data: bytes | str) -> None:

@@ -49,6 +49,7 @@ class BodyModel:
         correction_rad: tuple[float, float, float] = (0.0, 0.0, 0.0),
     ) -> None:
         self.T_head_camera = T_head_camera(camera, correction_rad)
+        self._torso = links(version)[_ROOT_LINK]
         self.model, self._q_index = _build(version, self.T_head_camera)
         self._data = self.model.createData()
         self._frame_ids = {
@@ -66,7 +67,11 @@ class BodyModel:
     def centre_of_mass(self, angles_rad: NDArray[np.float64]) -> NDArray[np.float64]:
         """(3,) centre of mass in the torso, metres."""
         q = np.asarray(angles_rad, dtype=np.float64)[self._q_index]
-        return np.array(pin.centerOfMass(self.model, self._data, q))
+        # pinocchio leaves out what is fixed to its universe, which here is the torso
+        moving = np.array(pin.centerOfMass(self.model, self._data, q))
+        moving_kg, torso = float(self._data.mass[0]), self._torso
+        total = moving_kg * moving + torso.mass_kg * np.array(torso.com_m)
+        return np.asarray(total / (moving_kg + torso.mass_kg), dtype=np.float64)
 
     def _placement(self, name: str) -> Matrix:
         return np.array(self._data.oMf[self._frame_ids[name]].homogeneous)
@@ -86,7 +91,6 @@ def _build(version: NaoVersion, T_camera: Matrix) -> tuple[pin.Model, NDArray[np
     model = pin.Model()
     bodies = links(version)
     joint_of_link = {_ROOT_LINK: 0}
-    model.appendBodyToJoint(0, _inertia(bodies[_ROOT_LINK]), pin.SE3.Identity())
     moving = [joint for joint in JOINTS if joint.child in bodies]
     for joint in moving:
         joint_of_link[joint.child] = _add_joint(model, joint, joint_of_link[joint.parent], bodies)
