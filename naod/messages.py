@@ -1,6 +1,6 @@
 """Messages on the bus, under `nao/<robot>/`, as JSON. Units are in the names or stated here.
 
-Numbers that are not finite do not pass: JSON has none, and `decode` refuses them.
+Numbers that are not finite do not pass: JSON has none, and `naod.bus.wire` refuses them.
 """
 
 from __future__ import annotations
@@ -10,11 +10,13 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-Name = Annotated[str, Meta(min_length=1, max_length=64)]
+# no control characters: names are printed on terminals and written to logs
+Name = Annotated[str, Meta(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f-\x9f]+$")]
 Sequence = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 TtlMs = Annotated[int, Meta(gt=0, le=1000)]
 
-MOVE_KINDS = ("velocity", "step", "stop")
+TRACKER = "tracker"
+"""The `source` of the daemon's own commands; every other source is an operator."""
 
 
 class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -116,11 +118,16 @@ class TruthMessage(Message, frozen=True):
 
 
 class DiagnosticsMessage(Message, frozen=True):
-    """`diagnostics`, 1 Hz: the loop's period and latency in ms, counts since start-up."""
+    """`diagnostics`, 1 Hz: over the last second, and counts since start-up.
+
+    `period_ms` is the mean, `jitter_ms` the standard deviation; `latency_ms` is the mean from the
+    middle of an exposure to the commands that came of it. `refused` counts messages.
+    """
 
     stamp_ns: int
     period_ms: float
     period_max_ms: float
+    jitter_ms: float
     latency_ms: float
     overruns: int
     frames: int
@@ -128,3 +135,59 @@ class DiagnosticsMessage(Message, frozen=True):
     memory_mb: float
     temperature_max_c: float
     battery: float
+
+
+class NoArguments(Message, frozen=True):
+    """`rpc/status`, `stop`, `estop`, `release`, `goals`, `watch`: nothing to say."""
+
+
+class GoalCall(Message, frozen=True):
+    """`rpc/start` and `rpc/teach`: a goal by its name."""
+
+    goal: Name
+
+
+class LabelCall(Message, frozen=True):
+    """`rpc/label`: a region of the camera's picture, in pixels."""
+
+    x: Annotated[int, Meta(ge=0, le=4096)]
+    y: Annotated[int, Meta(ge=0, le=4096)]
+    width: Annotated[int, Meta(gt=0, le=4096)]
+    height: Annotated[int, Meta(gt=0, le=4096)]
+
+
+class RobotMessage(Message, frozen=True):
+    """Which robot answers."""
+
+    name: str
+    version: str
+    backend: str
+    simulated: bool
+
+
+class StatusReply(Message, frozen=True, kw_only=True):
+    """Answer of `rpc/status`; `estopped` is latched until `release`."""
+
+    ok: Literal[True] = True
+    version: str
+    robot: RobotMessage
+    estopped: bool
+    labelled: bool
+    goals: tuple[str, ...]
+    state: StateMessage | None
+    walk: WalkState | None
+    diagnostics: DiagnosticsMessage | None
+
+
+class FailureDetail(Message, frozen=True):
+    """`code` is for programs, `message` for people."""
+
+    code: str
+    message: str
+
+
+class FailureReply(Message, frozen=True, kw_only=True):
+    """Answer of any `rpc/<verb>` that was not done."""
+
+    ok: Literal[False] = False
+    error: FailureDetail
