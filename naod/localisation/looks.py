@@ -56,7 +56,7 @@ def combine(looks: Sequence[Look]) -> Look:
         information += inverse
         weighted += inverse @ points[i]
     covariance: NDArray[np.float64] = np.asarray(np.linalg.inv(information), dtype=np.float64)
-    x, y, z, phi = covariance @ weighted
+    x, y, z, phi = (float(v) for v in covariance @ weighted)
     return Look(looks[-1].stamp_ns, from_cartesian(x, y, z, reference + phi), covariance)
 
 
