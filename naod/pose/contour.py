@@ -1,0 +1,134 @@
+"""The outline of a shape as its camera sees it: a closed line of points on the object.
+
+Clockwise as seen, from top left. A cylinder's outline is two straight sides, where the view just
+touches the mantle, and an arc of each rim; a rectangle's is its four edges.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from naod.geometry.camera import PinholeCamera
+from naod.pose.objects import Cylinder, ObjectShape
+
+CYLINDER, RECTANGLE = 0, 1
+ARC = 24
+"""Straight pieces that stand for an arc when the nearest one is looked for."""
+
+VERTICES = 2 * ARC + 3
+TOP, RIGHT, BOTTOM, LEFT = range(4)
+
+
+def figures(shape: ObjectShape) -> tuple[int, float, float]:
+    """Kind, half width (or radius) and half height, as the kernels take them."""
+    if isinstance(shape, Cylinder):
+        return CYLINDER, shape.radius_m, shape.height_m / 2.0
+    return RECTANGLE, shape.width_m / 2.0, shape.height_m / 2.0
+
+
+@njit(cache=True, nogil=True)
+def _rectangle(
+    half_width: float, half_height: float, vertices: NDArray[np.float64], edges: NDArray[np.int64]
+) -> int:
+    for k in range(5):
+        vertices[k, 0] = half_width if k in (1, 2) else -half_width
+        vertices[k, 1] = -half_height if k in (2, 3) else half_height
+        vertices[k, 2] = 0.0
+        vertices[k, 3] = 0.0
+    for k in range(4):
+        edges[k] = k
+    return 4
+
+
+@njit(cache=True, nogil=True)
+def _cylinder(
+    radius: float,
+    half_height: float,
+    eye: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    edges: NDArray[np.int64],
+) -> int:
+    towards = math.atan2(eye[0], eye[2])
+    away = math.hypot(eye[0], eye[2])
+    # from within the infinite cylinder only one end is seen, and all of its rim
+    within = away <= radius
+    half = 0.0 if within else math.acos(radius / away)
+    high = -half_height if within and eye[1] < 0.0 else half_height
+    low = half_height if within and eye[1] > 0.0 else -half_height
+    top_span = 2.0 * (half - math.pi) if eye[1] > half_height else 2.0 * half
+    bottom_span = 2.0 * (math.pi - half) if eye[1] < -half_height else -2.0 * half
+    for k in range(ARC + 1):
+        part = k / ARC
+        angles = (towards - half + part * top_span, towards + half + part * bottom_span)
+        for end in range(2):
+            row = k + end * (ARC + 1)
+            vertices[row, 0] = radius * math.sin(angles[end])
+            vertices[row, 1] = high if end == 0 else low
+            vertices[row, 2] = radius * math.cos(angles[end])
+            vertices[row, 3] = angles[end]
+            edges[row] = TOP if end == 0 else BOTTOM
+    edges[ARC], edges[2 * ARC + 1] = RIGHT, LEFT
+    vertices[2 * ARC + 2] = vertices[0]
+    return 2 * ARC + 2
+
+
+@njit(cache=True, nogil=True)
+def outline(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    edges: NDArray[np.int64],
+) -> int:
+    """Fill the outline of a shape at T_camera_object = (R, t); returns the number of pieces.
+
+    Piece k runs from row k to row k + 1 of `vertices` (VERTICES, 4): x, y, z along the object,
+    and the angle about y where the piece is an arc. `edges[k]` is TOP, RIGHT, BOTTOM or LEFT.
+    """
+    if kind == RECTANGLE:
+        return _rectangle(half_width, half_height, vertices, edges)
+    eye = np.empty(3)
+    for k in range(3):
+        eye[k] = -(R[0, k] * t[0] + R[1, k] * t[1] + R[2, k] * t[2])
+    return _cylinder(half_width, half_height, eye, vertices, edges)
+
+
+@njit(cache=True, nogil=True)
+def is_arc(kind: int, edge: int) -> bool:
+    """Whether an edge is curved."""
+    return kind == CYLINDER and edge in (TOP, BOTTOM)
+
+
+def outline_in_camera(
+    shape: ObjectShape, T_camera_object: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The closed outline (n + 1, 3) in the camera's frame, and the edge (n,) of each piece."""
+    vertices = np.empty((VERTICES, 4))
+    edges = np.empty(VERTICES, dtype=np.int64)
+    kind, half_width, half_height = figures(shape)
+    R, t = np.ascontiguousarray(T_camera_object[:3, :3]), T_camera_object[:3, 3].copy()
+    pieces = outline(kind, half_width, half_height, R, t, vertices, edges)
+    return vertices[: pieces + 1, :3] @ R.T + t, edges[:pieces].copy()
+
+
+def outline_px(
+    shape: ObjectShape, T_camera_object: NDArray[np.float64], camera: PinholeCamera
+) -> NDArray[np.float64]:
+    """The closed outline in pixels, (n + 1, 2): to draw it."""
+    return camera.project(outline_in_camera(shape, T_camera_object)[0])
+
+
+def corners_px(
+    shape: ObjectShape, T_camera_object: NDArray[np.float64], camera: PinholeCamera
+) -> NDArray[np.float64]:
+    """Ends of the two sides of the outline, (4, 2): top left, right, bottom right, left."""
+    points = outline_px(shape, T_camera_object, camera)
+    if isinstance(shape, Cylinder):
+        return points[[0, ARC, ARC + 1, 2 * ARC + 1]]
+    return points[:4]

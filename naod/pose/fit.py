@@ -1,0 +1,273 @@
+"""Gauss-Newton: the pose whose outline passes through measured edge points.
+
+Points and outline are compared on the plane z = 1. A point's residual is its distance from the
+nearest piece of the outline, along that piece's outward normal. Sliding along the outline changes
+nothing to first order, so its derivative is that of the point of the object lying there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from naod.pose.contour import CYLINDER, VERTICES, figures, is_arc, outline
+from naod.pose.linear import solve_symmetric
+from naod.pose.objects import ObjectShape
+
+ITERATIONS = 12
+OUTLIER = 3.0
+"""Robust standard deviations at which a point's weight has fallen to a quarter."""
+
+DEPTH_MIN_M = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A fitted pose and what it was fitted to.
+
+    residuals: (n,) pixels, positive outside the outline. jacobian: (n, 6) of them by translation
+    (m) and rotation (rad) about the object's origin, camera axes. edges: (n,) which edge. weights:
+    (n,) in 0 to 1 after down-weighting outliers.
+    """
+
+    T_camera_object: NDArray[np.float64]
+    residuals: NDArray[np.float64]
+    jacobian: NDArray[np.float64]
+    edges: NDArray[np.int64]
+    weights: NDArray[np.float64]
+
+    def cost(self, cut_px: float) -> float:
+        """Mean squared residual, each cut at `cut_px`, px squared."""
+        return float(np.mean(np.minimum(np.abs(self.residuals), cut_px) ** 2))
+
+
+@njit(cache=True, nogil=True)
+def _project(
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    count: int,
+    image: NDArray[np.float64],
+) -> None:
+    for k in range(count):
+        x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
+        depth = R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2]
+        depth = max(depth, DEPTH_MIN_M)
+        image[k, 0] = (R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0]) / depth
+        image[k, 1] = (R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1]) / depth
+        image[k, 2] = depth
+
+
+@njit(cache=True, nogil=True)
+def _nearest(image: NDArray[np.float64], pieces: int, u: float, v: float) -> tuple[int, float]:
+    """The piece of the outline nearest to (u, v), and how far along it the foot lies."""
+    best, piece, along = np.inf, 0, 0.0
+    for k in range(pieces):
+        du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
+        length2 = du * du + dv * dv
+        if length2 < 1e-18:
+            continue
+        s = ((u - image[k, 0]) * du + (v - image[k, 1]) * dv) / length2
+        s = min(max(s, 0.0), 1.0)
+        ru, rv = u - image[k, 0] - s * du, v - image[k, 1] - s * dv
+        distance2 = ru * ru + rv * rv
+        if distance2 < best:
+            best, piece, along = distance2, k, s
+    return piece, along
+
+
+@njit(cache=True, nogil=True)
+def _foot(
+    kind: int,
+    half_width: float,
+    vertices: NDArray[np.float64],
+    edge: int,
+    piece: int,
+    part: float,
+    X: NDArray[np.float64],
+) -> None:
+    """The point of the object at a part of a piece."""
+    if is_arc(kind, edge):
+        angle = vertices[piece, 3] + part * (vertices[piece + 1, 3] - vertices[piece, 3])
+        X[0] = half_width * math.sin(angle)
+        X[1] = vertices[piece, 1]
+        X[2] = half_width * math.cos(angle)
+    else:
+        for k in range(3):
+            X[k] = vertices[piece, k] + part * (vertices[piece + 1, k] - vertices[piece, k])
+
+
+@njit(cache=True, nogil=True)
+def compare(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    points: NDArray[np.float64],
+    residuals: NDArray[np.float64],
+    jacobian: NDArray[np.float64],
+    edges: NDArray[np.int64],
+) -> None:
+    """Residuals (n,), Jacobian (n, 6) and edges (n,) of points (n, 2), all on the plane z = 1."""
+    vertices, image = np.empty((VERTICES, 4)), np.empty((VERTICES, 3))
+    names, X = np.empty(VERTICES, dtype=np.int64), np.empty(3)
+    pieces = outline(kind, half_width, half_height, R, t, vertices, names)
+    _project(R, t, vertices, pieces + 1, image)
+    for i in range(points.shape[0]):
+        u, v = points[i, 0], points[i, 1]
+        piece, s = _nearest(image, pieces, u, v)
+        near, far = image[piece, 2], image[piece + 1, 2]
+        _foot(kind, half_width, vertices, names[piece], piece,
+              s * near / (s * near + (1.0 - s) * far), X)  # fmt: skip
+        a0 = R[0, 0] * X[0] + R[0, 1] * X[1] + R[0, 2] * X[2]
+        a1 = R[1, 0] * X[0] + R[1, 1] * X[1] + R[1, 2] * X[2]
+        a2 = R[2, 0] * X[0] + R[2, 1] * X[1] + R[2, 2] * X[2]
+        depth = max(a2 + t[2], DEPTH_MIN_M)
+        pu, pv = (a0 + t[0]) / depth, (a1 + t[1]) / depth
+        du, dv = image[piece + 1, 0] - image[piece, 0], image[piece + 1, 1] - image[piece, 1]
+        length = max(math.hypot(du, dv), 1e-12)
+        nu, nv = dv / length, -du / length
+        residuals[i] = nu * (u - pu) + nv * (v - pv)
+        g0, g1, g2 = nu / depth, nv / depth, -(nu * pu + nv * pv) / depth
+        jacobian[i, 0], jacobian[i, 1], jacobian[i, 2] = -g0, -g1, -g2
+        jacobian[i, 3] = -(a1 * g2 - a2 * g1)
+        jacobian[i, 4] = -(a2 * g0 - a0 * g2)
+        jacobian[i, 5] = -(a0 * g1 - a1 * g0)
+        edges[i] = names[piece]
+
+
+@njit(cache=True, nogil=True)
+def robust_weights(
+    residuals: NDArray[np.float64], floor: float, weights: NDArray[np.float64]
+) -> float:
+    """Geman-McClure weights by the median absolute residual; returns the scale used."""
+    scale = max(floor, 1.4826 * float(np.median(np.abs(residuals))))
+    for i in range(residuals.size):
+        ratio = residuals[i] / (OUTLIER * scale)
+        weights[i] = 1.0 / (1.0 + ratio * ratio) ** 2
+    return scale
+
+
+@njit(cache=True, nogil=True)
+def _turn(R: NDArray[np.float64], wx: float, wy: float, wz: float) -> NDArray[np.float64]:
+    """exp(w) R, by Rodrigues' formula."""
+    angle = math.sqrt(wx * wx + wy * wy + wz * wz)
+    if angle < 1e-12:
+        return R.copy()
+    x, y, z = wx / angle, wy / angle, wz / angle
+    c, s = math.cos(angle), math.sin(angle)
+    d = 1.0 - c
+    Q = np.empty((3, 3))
+    Q[0, 0], Q[0, 1], Q[0, 2] = c + d * x * x, d * x * y - s * z, d * x * z + s * y
+    Q[1, 0], Q[1, 1], Q[1, 2] = d * x * y + s * z, c + d * y * y, d * y * z - s * x
+    Q[2, 0], Q[2, 1], Q[2, 2] = d * x * z - s * y, d * y * z + s * x, c + d * z * z
+    out = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                out[i, j] += Q[i, k] * R[k, j]
+    return out
+
+
+@njit(cache=True, nogil=True)
+def _normal_equations(
+    kind: int,
+    R: NDArray[np.float64],
+    residuals: NDArray[np.float64],
+    jacobian: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    A: NDArray[np.float64],
+    b: NDArray[np.float64],
+) -> None:
+    A[:] = 0.0
+    b[:] = 0.0
+    for i in range(residuals.size):
+        for j in range(6):
+            b[j] -= weights[i] * jacobian[i, j] * residuals[i]
+            for k in range(j + 1):
+                A[j, k] += weights[i] * jacobian[i, j] * jacobian[i, k]
+    if kind == CYLINDER:
+        # the turn about its own axis is not seen: hold it
+        stiff = A[3, 3] + A[4, 4] + A[5, 5]
+        for j in range(3):
+            for k in range(j + 1):
+                A[3 + j, 3 + k] += stiff * R[j, 1] * R[k, 1]
+    for j in range(6):
+        A[j, j] += 1e-4 * A[j, j] + 1e-9
+
+
+@njit(cache=True, nogil=True)
+def _descend(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    points: NDArray[np.float64],
+    trust: NDArray[np.float64],
+    floor: float,
+    iterations: int,
+    residuals: NDArray[np.float64],
+    jacobian: NDArray[np.float64],
+    edges: NDArray[np.int64],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    A, b, step = np.empty((6, 6)), np.empty(6), np.empty(6)
+    for _ in range(iterations):
+        compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
+        robust_weights(residuals, floor, weights)
+        _normal_equations(kind, R, residuals, jacobian, weights * trust, A, b)
+        if not solve_symmetric(A, b, step):
+            break
+        # no further at once than the distance to the object allows
+        size = math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2) / (0.3 * abs(t[2]))
+        turn = math.sqrt(step[3] ** 2 + step[4] ** 2 + step[5] ** 2) / 0.35
+        step /= max(1.0, size, turn)
+        t = t + step[:3]
+        t[2] = max(t[2], 2.0 * DEPTH_MIN_M)
+        R = _turn(R, step[3], step[4], step[5])
+        if size < 1e-5 and turn < 1e-4:
+            break
+    compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
+    robust_weights(residuals, floor, weights)
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, t
+    return T
+
+
+def fit_outline(
+    shape: ObjectShape,
+    start: NDArray[np.float64],
+    points: NDArray[np.float64],
+    focal_px: float,
+    floor_px: float,
+    trust: NDArray[np.float64] | None = None,
+    iterations: int = ITERATIONS,
+) -> Fit:
+    """The pose whose outline fits points (n, 2) on the plane z = 1, from a start (4, 4).
+
+    focal_px turns distances on that plane into pixels; floor_px is the least scale at which a
+    residual counts as an outlier; trust (n,) are weights the points come with.
+    """
+    n = len(points)
+    residuals, jacobian = np.empty(n), np.empty((n, 6))
+    edges, weights = np.empty(n, dtype=np.int64), np.empty(n)
+    T = _descend(
+        *figures(shape),
+        np.ascontiguousarray(start[:3, :3]),
+        start[:3, 3].copy(),
+        np.ascontiguousarray(points),
+        np.ones(n) if trust is None else trust,
+        floor_px / focal_px,
+        iterations,
+        residuals,
+        jacobian,
+        edges,
+        weights,
+    )
+    return Fit(T, residuals * focal_px, jacobian * focal_px, edges, weights)

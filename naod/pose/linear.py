@@ -1,0 +1,37 @@
+"""A small symmetric system, solved without a library call so that it can sit in a kernel."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+
+@njit(cache=True, nogil=True)
+def solve_symmetric(A: NDArray[np.float64], b: NDArray[np.float64], x: NDArray[np.float64]) -> bool:
+    """Solve A x = b by Cholesky; A (n, n) is destroyed. False where A is not positive definite."""
+    n = b.size
+    for i in range(n):
+        for j in range(i + 1):
+            total = A[i, j]
+            for k in range(j):
+                total -= A[i, k] * A[j, k]
+            if i == j:
+                if not total > 0.0:
+                    return False
+                A[i, i] = math.sqrt(total)
+            else:
+                A[i, j] = total / A[j, j]
+    for i in range(n):
+        total = b[i]
+        for k in range(i):
+            total -= A[i, k] * x[k]
+        x[i] = total / A[i, i]
+    for i in range(n - 1, -1, -1):
+        total = x[i]
+        for k in range(i + 1, n):
+            total -= A[k, i] * x[k]
+        x[i] = total / A[i, i]
+    return True

@@ -1,0 +1,109 @@
+"""The object's pose from a picture and a blob, or from a mask alone."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from naod.geometry.camera import PinholeCamera
+from naod.perception.blob import Blob, blob_of_mask
+from naod.perception.colour_model import ColourModel
+from naod.pose.contour import corners_px
+from naod.pose.objects import ObjectShape
+from naod.pose.paper import paper_pose
+from naod.pose.result import Estimator, ObjectPose
+from naod.pose.search import Reading, on_picture, readings
+from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
+
+PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.1, per_point=3.0)
+MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.25, edge_px=0.25, per_point=3.0)
+
+
+def locate(
+    yuyv: NDArray[np.uint8],
+    blob: Blob,
+    model: ColourModel,
+    shape: ObjectShape,
+    camera: PinholeCamera,
+    estimator: Estimator = "exact",
+) -> ObjectPose | None:
+    """The pose of the object that a blob shows, its edges found again at full resolution.
+
+    yuyv: (H, W, 2) uint8, the whole picture, of the camera's size. None when the blob's outline is
+    not that of the shape.
+    """
+    del model
+    coarse = readings(blob, shape, camera)
+    reaches = (max(1.5 * blob.grain_px, 4.0), 4.0)
+    fine = [on_picture(reading, yuyv, shape, camera, reaches) for reading in coarse]
+    seen = [reading for reading in fine if reading is not None]
+    if seen:
+        return _result(seen, PICTURE_NOISE, blob, shape, camera, estimator)
+    return _result(coarse, _coarse_noise(blob), blob, shape, camera, estimator)
+
+
+def locate_mask(
+    mask: NDArray[np.uint8],
+    shape: ObjectShape,
+    camera: PinholeCamera,
+    estimator: Estimator = "exact",
+) -> ObjectPose | None:
+    """The pose of the object that a mask (H, W), non-zero inside, shows; None if it is not one."""
+    blob = blob_of_mask(mask)
+    if blob is None:
+        return None
+    found = readings(blob, shape, camera)
+    return _result(found, MASK_NOISE, blob, shape, camera, estimator)
+
+
+def _coarse_noise(blob: Blob) -> EdgeNoise:
+    grain = blob.grain_px
+    return EdgeNoise(0.3 * grain, 0.25 * grain, 0.25 * grain, 3.0)
+
+
+def _result(
+    found: list[Reading],
+    noise: EdgeNoise,
+    blob: Blob,
+    shape: ObjectShape,
+    camera: PinholeCamera,
+    estimator: Estimator,
+) -> ObjectPose | None:
+    if not found:
+        return None
+    found = sorted(found, key=_cost)
+    best = found[0]
+    total = covariance(best.fit, shape, noise, best.trust)
+    if estimator == "paper":
+        return paper_pose(best, total, shape, camera, blob.clipped)
+    for other in found[1:]:
+        total = _with_doubt(total, best, other, noise)
+    T = best.fit.T_camera_object
+    return ObjectPose(T, total, corners_px(shape, T, camera), "exact", blob.clipped)
+
+
+def _cost(reading: Reading) -> float:
+    residuals = np.minimum(np.abs(reading.fit.residuals), 2.0)
+    return float((reading.trust * residuals**2).sum() / reading.trust.sum())
+
+
+def _with_doubt(
+    total: NDArray[np.float64], best: Reading, other: Reading, noise: EdgeNoise
+) -> NDArray[np.float64]:
+    """Covariance of a mixture: the other reading counts by how little worse it fits."""
+    sigma2 = point_sigma(best.fit, noise) ** 2 * noise.per_point
+    gap = (_cost(other) - _cost(best)) * float(best.trust.sum()) / sigma2
+    share = 1.0 / (1.0 + math.exp(min(0.5 * gap, 50.0)))
+    T, T_other = best.fit.T_camera_object, other.fit.T_camera_object
+    difference = np.append(T_other[:3, 3] - T[:3, 3], _rotation_vector(T_other, T))
+    return total + share * np.outer(difference, difference)
+
+
+def _rotation_vector(T_other: NDArray[np.float64], T: NDArray[np.float64]) -> NDArray[np.float64]:
+    Q = T_other[:3, :3] @ T[:3, :3].T
+    angle = math.acos(min(max((float(np.trace(Q)) - 1.0) / 2.0, -1.0), 1.0))
+    vee = np.array([Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1]])
+    norm = np.linalg.norm(vee)
+    return vee * (angle / norm) if norm > 1e-12 else np.zeros(3)

@@ -1,0 +1,63 @@
+"""Covariance of a fitted pose: noise of the edge points, and what whole edges have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from naod.pose.fit import Fit
+from naod.pose.objects import Cylinder, ObjectShape
+
+VAGUE = np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+"""Information there is without looking: to a metre and a radian."""
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeNoise:
+    """How wrong edge points are, in pixels.
+
+    `floor_px`: least standard deviation of one point. `common_px`: the whole outline too wide or
+    too narrow. `edge_px`: each edge by itself. `per_point`: neighbours that err together.
+    """
+
+    floor_px: float
+    common_px: float
+    edge_px: float
+    per_point: float
+
+
+def point_sigma(fit: Fit, noise: EdgeNoise) -> float:
+    """Standard deviation of one independent edge point, from the residuals, in pixels."""
+    spare = max(float(fit.weights.sum()) - 6.0, 1.0)
+    return max(noise.floor_px, float(np.sqrt((fit.weights * fit.residuals**2).sum() / spare)))
+
+
+def covariance(
+    fit: Fit, shape: ObjectShape, noise: EdgeNoise, trust: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
+    """(6, 6) of translation (m) and rotation (rad) along the camera's axes.
+
+    The turn of a cylinder about its own axis is fixed by convention and has no variance.
+    """
+    weights = fit.weights if trust is None else fit.weights * trust
+    weighted = fit.jacobian * (weights / (point_sigma(fit, noise) ** 2 * noise.per_point))[:, None]
+    information = weighted.T @ fit.jacobian + VAGUE
+    if isinstance(shape, Cylinder):
+        axis = np.append(np.zeros(3), fit.T_camera_object[:3, 1])
+        information += 1e6 * np.trace(information[3:, 3:]) * np.outer(axis, axis)
+    inverse = np.linalg.inv(information)
+    total = inverse.copy()
+    for edge in np.unique(fit.edges):
+        total += _shared(inverse, weighted[fit.edges == edge], noise.edge_px)
+    total += _shared(inverse, weighted, noise.common_px)
+    return (total + total.T) / 2.0
+
+
+def _shared(
+    inverse: NDArray[np.float64], weighted: NDArray[np.float64], sigma_px: float
+) -> NDArray[np.float64]:
+    """What an offset common to some points does to the pose."""
+    response = inverse @ weighted.sum(axis=0)
+    return np.outer(response, response) * sigma_px**2
