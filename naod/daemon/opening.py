@@ -1,0 +1,55 @@
+"""Opening the robot that the configuration names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hal.backends import OpenOptions, open_robot
+from hal.protocols import Robot
+from hal.scenario import Scenario
+from hal.simulation import SimulatedRobot
+from naod.config import DaemonConfig
+from naod.files import read_toml
+from naod.pose.objects import Cylinder, ObjectShape
+
+
+def open_configured(config: DaemonConfig, beside: Path) -> Robot:
+    """Open it; paths in the configuration are `beside` the file. Raises InputError, HalError."""
+    section: dict[str, object] = {}
+    if config.robot.backend == "sim":
+        section = _simulation(config, beside)
+    elif config.robot.backend == "naoqi":
+        section = {"url": config.naoqi.url, "user": config.naoqi.user}
+    else:
+        section = {"socket": config.lola.socket}
+    options = OpenOptions(
+        name=config.robot.name,
+        version=config.robot.version,
+        camera=config.camera.which,
+        width=config.camera.width,
+        height=config.camera.height,
+        fps=config.camera.fps,
+        section=section,
+    )
+    return open_robot(config.robot.backend, options)
+
+
+def shape_for(config: DaemonConfig, robot: Robot) -> ObjectShape:
+    """The object as configured; in simulation, else, the one that stands there."""
+    if config.object is not None:
+        return config.object
+    if isinstance(robot, SimulatedRobot):
+        from naod.experiment.opening import shape_of
+
+        return shape_of(robot.scenario.object)
+    return Cylinder()
+
+
+def _simulation(config: DaemonConfig, beside: Path) -> dict[str, object]:
+    path = beside / config.sim.scenario if config.sim.scenario else None
+    return {
+        "scenario": read_toml(path, Scenario) if path is not None else None,
+        "scenario_folder": path.parent if path is not None else beside,
+        "seed": config.sim.seed,
+        "real_time": True,
+    }

@@ -1,0 +1,113 @@
+"""The daemon: everything opened in order, watched, and closed in order."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+import threading
+from contextlib import ExitStack
+from pathlib import Path
+from types import FrameType
+
+from hal.protocols import Robot
+from hal.simulation import SimulatedRobot
+from naod.bus.bus import Bus
+from naod.config import DaemonConfig, state_folder
+from naod.daemon.act import Actor
+from naod.daemon.desk import Desk
+from naod.daemon.faults import Faults
+from naod.daemon.loop import Loop
+from naod.daemon.notify import Notifier
+from naod.daemon.opening import open_configured, shape_for
+from naod.daemon.store import Store
+from naod.daemon.truth import TruthTeller
+from naod.daemon.verbs import Verbs
+from naod.daemon.warm_up import warm_up
+from naod.loop.equipment import Equipment
+from naod.loop.state import LoopState
+from naod.messages import RobotMessage
+from naod.walk_server.rules import Rules
+from naod.walk_server.server import WalkServer
+
+log = logging.getLogger("naod")
+
+
+def run_daemon(config: DaemonConfig, beside: Path) -> int:
+    """Run until told to stop: 0 after a signal, 1 when a part of us ended by itself.
+
+    Raises InputError and HalError for whatever cannot be opened.
+    """
+    logging.basicConfig(
+        level=config.log.level.upper(), stream=sys.stderr, format="naod: %(levelname)s: %(message)s"
+    )
+    ended, stopped = threading.Event(), threading.Event()
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        stopped.set()
+        ended.set()
+
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, stop)
+    with ExitStack() as stack:
+        notifier = Notifier.from_environment()
+        stack.callback(notifier.close)
+        _open(config, beside, stack, notifier, ended)
+        ended.wait()
+        notifier.stopping()
+        log.info("stopping")
+    return 0 if stopped.is_set() else 1
+
+
+def _open(
+    config: DaemonConfig, beside: Path, stack: ExitStack, notifier: Notifier, ended: threading.Event
+) -> None:
+    """Open every part; the stack closes them the other way round, the walk before the robot."""
+    store = Store(state_folder(config))
+    state = LoopState.initial(store.goals(), store.model())
+    bus = Bus.open(config.bus, config.robot.name)
+    stack.callback(bus.close)
+    robot = open_configured(config, beside)
+    stack.callback(robot.close)
+    equipment = Equipment.from_config(config, robot.info, shape_for(config, robot))
+
+    server = WalkServer(robot, bus, Rules.from_config(config.walk), store.latch)
+    stack.callback(server.close)
+    server.on_end = ended.set
+    server.start()
+
+    desk = Desk()
+    stack.callback(desk.fail_all, "stopping", "the daemon is closing down")
+    actor = Actor(bus, server.head, store, desk, Faults())
+    loop = Loop(robot, bus, server, actor, desk, equipment, state)
+    stack.callback(loop.close)
+    loop.on_end = ended.set
+    loop.after_tick = notifier.alive
+    verbs = Verbs(bus, _robot_message(robot), server, loop, actor, desk)
+
+    def begin() -> None:
+        """The last steps before the first tick, in the loop's own thread."""
+        warm_up(equipment, robot.body.latest())
+        verbs.declare()
+        bus.announce()
+        notifier.ready()
+        log.info("ready")
+
+    loop.before_first = begin
+    if isinstance(robot, SimulatedRobot):
+        teller = TruthTeller(robot, bus)
+        stack.callback(teller.close)
+        teller.start()
+    endpoints = ", ".join(config.bus.listen) or "no endpoint"
+    log.info("robot %s (%s), listening on %s", robot.info.name, robot.info.backend, endpoints)
+    log.info("state folder %s", store.folder)
+    # once more, to be the first thing closed: the walk stops before anything else
+    stack.callback(server.close)
+    loop.start()
+
+
+def _robot_message(robot: Robot) -> RobotMessage:
+    info = robot.info
+    return RobotMessage(
+        name=info.name, version=info.version, backend=info.backend, simulated=info.simulated
+    )
