@@ -7,6 +7,7 @@ import signal
 import sys
 import threading
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from types import FrameType
 
@@ -62,7 +63,7 @@ def run_daemon(config: DaemonConfig, beside: Path) -> int:
 def _open(
     config: DaemonConfig, beside: Path, stack: ExitStack, notifier: Notifier, ended: threading.Event
 ) -> None:
-    """Open every part; the stack closes them the other way round, the walk before the robot."""
+    """Open every part; the stack closes them the other way round."""
     store = Store(state_folder(config))
     state = LoopState.initial(store.goals(), store.model())
     bus = Bus.open(config.bus, config.robot.name)
@@ -75,35 +76,35 @@ def _open(
     stack.callback(server.close)
     server.on_end = ended.set
     server.start()
+    if isinstance(robot, SimulatedRobot):
+        teller = TruthTeller(robot, bus)
+        stack.callback(teller.close)
+        teller.start()
 
     desk = Desk()
     stack.callback(desk.fail_all, "stopping", "the daemon is closing down")
     actor = Actor(bus, server.head, store, desk, Faults())
     loop = Loop(robot, bus, server, actor, desk, equipment, state)
     stack.callback(loop.close)
-    loop.on_end = ended.set
-    loop.after_tick = notifier.alive
+    # once more, to be the first thing closed: the walk stops before anything else
+    stack.callback(server.close)
     verbs = Verbs(bus, _robot_message(robot), server, loop, actor, desk)
-
-    def begin() -> None:
-        """The last steps before the first tick, in the loop's own thread."""
-        warm_up(equipment, robot.body.latest())
-        verbs.declare()
-        bus.announce()
-        notifier.ready()
-        log.info("ready")
-
-    loop.before_first = begin
-    if isinstance(robot, SimulatedRobot):
-        teller = TruthTeller(robot, bus)
-        stack.callback(teller.close)
-        teller.start()
+    loop.after_tick = notifier.alive
+    loop.on_end = ended.set
+    loop.before_first = partial(_begin, equipment, robot, bus, verbs, notifier)
     endpoints = ", ".join(config.bus.listen) or "no endpoint"
     log.info("robot %s (%s), listening on %s", robot.info.name, robot.info.backend, endpoints)
     log.info("state folder %s", store.folder)
-    # once more, to be the first thing closed: the walk stops before anything else
-    stack.callback(server.close)
     loop.start()
+
+
+def _begin(equipment: Equipment, robot: Robot, bus: Bus, verbs: Verbs, notifier: Notifier) -> None:
+    """The last steps before the first tick, in the loop's own thread."""
+    warm_up(equipment, robot.body.latest())
+    verbs.declare()
+    bus.announce()
+    notifier.ready()
+    log.info("ready")
 
 
 def _robot_message(robot: Robot) -> RobotMessage:

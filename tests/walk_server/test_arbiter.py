@@ -6,70 +6,21 @@ import math
 from dataclasses import replace
 
 import pytest
+from walk_desk import FALLEN, MS, RULES, STANDING, WALKING, Desk
 
-from hal.types import PlanarMotion, WalkStatus
-from naod.messages import WalkCommand
+from hal.types import PlanarMotion
 from naod.walk_server import arbiter
-from naod.walk_server.rules import Rules
 from naod.walk_server.types import (
-    Action,
     ArbiterState,
     End,
     Estop,
     Halt,
-    Heartbeat,
-    Input,
     MoveTo,
-    Received,
     Release,
     Renew,
     SetVelocity,
     Unreadable,
 )
-
-RULES = Rules()
-MS = 1_000_000
-ZERO = PlanarMotion(0.0, 0.0, 0.0)
-STANDING = WalkStatus(0, False, False, ZERO, ZERO)
-WALKING = WalkStatus(0, True, False, PlanarMotion(0.1, 0.0, 0.0), ZERO)
-FALLEN = replace(STANDING, fallen=True)
-
-
-class Desk:
-    """Plays inputs and ticks at chosen times and keeps the last action."""
-
-    def __init__(self) -> None:
-        self.state = ArbiterState()
-        self.seq = 0
-        self.tick(0)
-
-    def give(self, item: Input, status: WalkStatus = STANDING) -> None:
-        self.state = arbiter.receive(self.state, item, status, RULES)
-
-    def send(
-        self,
-        kind: str,
-        source: str = "op",
-        at_ms: float = 0.0,
-        motion: tuple[float, float, float] = (0.05, 0.0, 0.0),
-        status: WalkStatus = STANDING,
-        ttl_ms: int = 300,
-        seq: int | None = None,
-    ) -> str | None:
-        """Send a command; why it was refused, if it was."""
-        self.seq += 1
-        x, y, yaw = motion
-        number = self.seq if seq is None else seq
-        command = WalkCommand(
-            source=source, seq=number, kind=kind, x=x, y=y, yaw=yaw, ttl_ms=ttl_ms
-        )
-        refusals = self.state.refusals
-        self.give(Received(command, int(at_ms * MS)), status)
-        return self.state.refused if self.state.refusals > refusals else None
-
-    def tick(self, at_ms: float, status: WalkStatus = STANDING) -> Action | None:
-        self.state, action = arbiter.tick(self.state, status, int(at_ms * MS), RULES)
-        return action
 
 
 def test_first_act_is_to_halt() -> None:
@@ -184,87 +135,6 @@ def test_sources_are_bounded_and_silent_ones_forgotten() -> None:
     assert "sources" in reason
     assert desk.send("stop", source="one more", at_ms=61_000) is None
     assert len(desk.state.last) == RULES.sources_max
-
-
-def test_operator_holds_the_walk_over_the_tracker_until_the_ttl() -> None:
-    desk = Desk()
-    assert desk.send("step", source="tracker", at_ms=0) is None
-    assert isinstance(desk.tick(0), MoveTo)
-    assert desk.send("velocity", source="op", at_ms=100, status=WALKING) is None
-    assert desk.state.held_by == "op"
-    assert isinstance(desk.tick(110, WALKING), SetVelocity)
-    reason = desk.send("step", source="tracker", at_ms=200)
-    assert reason is not None
-    assert "op holds the walk" in reason
-    desk.tick(400, WALKING)
-    assert desk.state.held_by is None
-    assert desk.send("step", source="tracker", at_ms=410) is None
-
-
-def test_tracker_may_not_stop_what_an_operator_drives() -> None:
-    desk = Desk()
-    desk.send("velocity", source="op")
-    desk.tick(0)
-    assert desk.send("stop", source="tracker", at_ms=50) is not None
-    assert isinstance(desk.tick(60, WALKING), Renew)
-
-
-def test_second_operator_may_stop_but_not_drive() -> None:
-    desk = Desk()
-    desk.send("velocity", source="anna")
-    desk.tick(0)
-    reason = desk.send("velocity", source="bert", at_ms=20)
-    assert reason is not None
-    assert "anna holds" in reason
-    assert desk.send("stop", source="bert", at_ms=40) is None
-    assert desk.tick(50, WALKING) == Halt()
-
-
-def test_operators_step_holds_until_the_robot_stands() -> None:
-    desk = Desk()
-    desk.send("step", at_ms=0, ttl_ms=100)
-    desk.tick(0)
-    assert isinstance(desk.tick(500, STANDING), Renew)  # its reaction time
-    assert isinstance(desk.tick(1500, WALKING), Renew)
-    assert desk.state.held_by == "op"
-    assert desk.tick(3000, STANDING) is None
-    assert desk.state.held_by is None
-    assert desk.state.motion is None
-
-
-def test_step_that_never_begins_lets_go() -> None:
-    desk = Desk()
-    desk.send("step", at_ms=0, ttl_ms=100)
-    desk.tick(0)
-    desk.tick(RULES.step_start_s * 1000 + 50, STANDING)
-    assert desk.state.motion is None
-    assert desk.state.held_by is None
-
-
-def test_step_that_never_ends_is_stopped() -> None:
-    desk = Desk()
-    desk.send("step", at_ms=0)
-    desk.tick(0)
-    longest_ms = RULES.longest_step_s(PlanarMotion(0.05, 0.0, 0.0)) * 1000
-    assert isinstance(desk.tick(longest_ms - 10, WALKING), Renew)
-    assert desk.tick(longest_ms + 10, WALKING) == Halt()
-
-
-def test_trackers_step_ends_when_the_tracker_falls_silent() -> None:
-    desk = Desk()
-    desk.send("step", source="tracker", at_ms=0)
-    desk.tick(0)
-    assert isinstance(desk.tick(490, WALKING), Renew)
-    desk.give(Heartbeat(450 * MS))
-    assert isinstance(desk.tick(940, WALKING), Renew)
-    assert desk.tick(960, WALKING) == Halt()
-
-
-def test_operators_step_needs_no_tracker() -> None:
-    desk = Desk()
-    desk.send("step", source="op", at_ms=0)
-    desk.tick(0)
-    assert isinstance(desk.tick(2000, WALKING), Renew)
 
 
 def test_estop_latches() -> None:
