@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from hal.nao.cameras import SIZES
 from hal.types import CameraName, NaoVersion
 from naod.files import read_toml
 from naod.pose.objects import ObjectShape
@@ -70,6 +71,11 @@ class CameraConfig(_Section, frozen=True):
     cy: float | None = None
     distortion: tuple[float, float, float, float, float] | None = None
     correction_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if (self.width, self.height) not in SIZES:
+            known = ", ".join(f"{w}x{h}" for w, h in SIZES)
+            raise ValueError(f"width x height {self.width}x{self.height}: known: {known}")
 
 
 class BusConfig(_Section, frozen=True):
