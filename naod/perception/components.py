@@ -44,7 +44,7 @@ def _provisional(
             if i > 0:
                 for k in range(max(0, j - 1), min(width, j + 2)):
                     other = labels[i - 1, k]
-                    if other != 0 and other != found:
+                    if other not in (0, found):
                         found = other if found == 0 else _join(parents, found, other)
             if found == 0:
                 count += 1

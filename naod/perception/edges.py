@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.pose.linear import solve_symmetric
+from naod.geometry.linear import solve_symmetric
 
 STEP_PX = 0.5
 SAMPLES_MAX = 129
@@ -31,12 +31,15 @@ CONTRAST_MIN = 3.0
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """Edges along n normals: `offset_px` (n,) from the given place, positive outwards; `sigma_px`
-    (n,) by noise and slope; `seen` (n,) whether there is one at all.
+    """Edges along n normals.
+
+    `offset_px` (n,) from the given place, positive outwards; `sigma_px` (n,) by noise and slope;
+    `within` (n,) whether the picture reaches so far; `seen` (n,) whether there is an edge.
     """
 
     offset_px: NDArray[np.float64]
     sigma_px: NDArray[np.float64]
+    within: NDArray[np.bool_]
     seen: NDArray[np.bool_]
 
 
@@ -146,6 +149,7 @@ def _measure(
     depth: float,
     offset: NDArray[np.float64],
     sigma: NDArray[np.float64],
+    within: NDArray[np.bool_],
     seen: NDArray[np.bool_],
 ) -> None:
     height, width = yuyv.shape[0], yuyv.shape[1]
@@ -153,7 +157,8 @@ def _measure(
     for i in range(places.shape[0]):
         seen[i], offset[i], sigma[i] = False, 0.0, np.inf
         x, y = places[i, 0] + reach * normals[i, 0], places[i, 1] + reach * normals[i, 1]
-        if not (0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0):
+        within[i] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
+        if not within[i]:
             continue
         count = _profile(yuyv, places[i], normals[i], reach, depth, colours)
         contrast = _separation(colours, count, scores)
@@ -182,7 +187,8 @@ def measure_edges(
     how far to look on either side; depth_px: how far inside the object surely goes on.
     """
     n = len(places_px)
-    out = Edges(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_))
+    flags = np.empty((2, n), dtype=np.bool_)
+    out = Edges(np.empty(n), np.empty(n), flags[0], flags[1])
     reach = min(reach_px, (SAMPLES_MAX // 2) * STEP_PX)
     _measure(
         np.ascontiguousarray(yuyv),
@@ -192,6 +198,7 @@ def measure_edges(
         depth_px,
         out.offset_px,
         out.sigma_px,
+        out.within,
         out.seen,
     )
     return out

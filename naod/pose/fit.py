@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.geometry.linear import solve_symmetric
 from naod.pose.contour import CYLINDER, VERTICES, figures, is_arc, outline
-from naod.pose.linear import solve_symmetric
 from naod.pose.objects import ObjectShape
 
 ITERATIONS = 12

@@ -14,11 +14,28 @@ from naod.pose.contour import corners_px
 from naod.pose.objects import ObjectShape
 from naod.pose.paper import paper_pose
 from naod.pose.result import Estimator, ObjectPose
-from naod.pose.search import Reading, on_picture, readings
+from naod.pose.search import (
+    Reading,
+    first_readings,
+    next_readings,
+    on_picture,
+    outline_of,
+    seen_on_picture,
+)
 from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
 
 PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.1, per_point=3.0)
 MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.25, edge_px=0.25, per_point=3.0)
+
+
+NEAR_PX = 4.0
+"""How far from a good outline edges are looked for: the step and its plateaus."""
+
+OUTLIER = 3.0
+"""Standard deviations beyond which a residual says no more than that it does not fit."""
+
+WIDE = 0.2
+"""The same for a blob's outline, of its width: shading hides as much of a can from its colour."""
 
 
 def locate(
@@ -35,13 +52,26 @@ def locate(
     not that of the shape.
     """
     del model
-    coarse = readings(blob, shape, camera)
-    reaches = (max(1.5 * blob.grain_px, 4.0), 4.0)
-    fine = [on_picture(reading, yuyv, shape, camera, reaches) for reading in coarse]
-    seen = [reading for reading in fine if reading is not None]
+    coarse = first_readings(outline_of(blob), shape, camera)
+    seen = _refined(coarse, yuyv, shape, camera)
     if seen:
         return _result(seen, PICTURE_NOISE, blob, shape, camera, estimator)
     return _result(coarse, _coarse_noise(blob), blob, shape, camera, estimator)
+
+
+def _refined(
+    coarse: list[Reading], yuyv: NDArray[np.uint8], shape: ObjectShape, camera: PinholeCamera
+) -> list[Reading]:
+    """Edges looked for widely, all readings of those, and each fitted to the edges close by."""
+    if not coarse:
+        return []
+    wide = max(2.5 * coarse[0].outline.grain_px, NEAR_PX)
+    outline = seen_on_picture(coarse[0], yuyv, shape, camera, wide, WIDE)
+    found = [] if outline is None else next_readings(outline, shape, camera, coarse)
+    for _ in range(2):
+        closer = (on_picture(reading, yuyv, shape, camera, NEAR_PX) for reading in found)
+        found = [reading for reading in closer if reading is not None]
+    return found
 
 
 def locate_mask(
@@ -54,7 +84,7 @@ def locate_mask(
     blob = blob_of_mask(mask)
     if blob is None:
         return None
-    found = readings(blob, shape, camera)
+    found = first_readings(outline_of(blob), shape, camera)
     return _result(found, MASK_NOISE, blob, shape, camera, estimator)
 
 
@@ -73,28 +103,30 @@ def _result(
 ) -> ObjectPose | None:
     if not found:
         return None
-    found = sorted(found, key=_cost)
+    sigma_px = min(point_sigma(reading.fit, noise) for reading in found)
+    found = sorted(found, key=lambda reading: misfit(reading, sigma_px))
     best = found[0]
-    total = covariance(best.fit, shape, noise, best.trust)
+    total = covariance(best.fit, shape, noise, best.outline.trust)
     if estimator == "paper":
         return paper_pose(best, total, shape, camera, blob.clipped)
     for other in found[1:]:
-        total = _with_doubt(total, best, other, noise)
+        gap = (misfit(other, sigma_px) - misfit(best, sigma_px)) / noise.per_point
+        total = _with_doubt(total, best, other, gap)
     T = best.fit.T_camera_object
     return ObjectPose(T, total, corners_px(shape, T, camera), "exact", blob.clipped)
 
 
-def _cost(reading: Reading) -> float:
-    residuals = np.minimum(np.abs(reading.fit.residuals), 2.0)
-    return float((reading.trust * residuals**2).sum() / reading.trust.sum())
+def misfit(reading: Reading, sigma_px: float) -> float:
+    """Squared residuals over their variance, an outlier or an edge not seen counting OUTLIER^2."""
+    ratio = np.minimum(np.abs(reading.fit.residuals) / sigma_px, OUTLIER)
+    seen = float((ratio**2).sum())
+    return seen + OUTLIER**2 * reading.outline.missed
 
 
 def _with_doubt(
-    total: NDArray[np.float64], best: Reading, other: Reading, noise: EdgeNoise
+    total: NDArray[np.float64], best: Reading, other: Reading, gap: float
 ) -> NDArray[np.float64]:
     """Covariance of a mixture: the other reading counts by how little worse it fits."""
-    sigma2 = point_sigma(best.fit, noise) ** 2 * noise.per_point
-    gap = (_cost(other) - _cost(best)) * float(best.trust.sum()) / sigma2
     share = 1.0 / (1.0 + math.exp(min(0.5 * gap, 50.0)))
     T, T_other = best.fit.T_camera_object, other.fit.T_camera_object
     difference = np.append(T_other[:3, 3] - T[:3, 3], _rotation_vector(T_other, T))

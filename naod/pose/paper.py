@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
-from naod.perception.blob import oriented_box, ordered_corners
+from naod.perception.blob import ordered_corners, oriented_box
 from naod.pose.contour import BOTTOM, LEFT, RIGHT, TOP
 from naod.pose.objects import Cylinder, ObjectShape, Rectangle
 from naod.pose.result import ObjectPose
@@ -49,7 +49,7 @@ def box_corners(
     For a cylinder the oriented box. For a rectangle four free lines, since a box has no tilt.
     """
     sound = reading.fit.weights > 0.3
-    points, edges = camera.normalised(reading.points_px)[sound], reading.fit.edges[sound]
+    points, edges = camera.normalised(reading.outline.points_px)[sound], reading.fit.edges[sound]
     if len(points) < 4:
         return None
     if isinstance(shape, Cylinder):

@@ -3,57 +3,117 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
-from naod.perception.blob import Blob, ordered_corners
+from naod.perception.blob import Blob, ordered_corners, oriented_box
 from naod.perception.edges import measure_edges
 from naod.pose.contour import outline_in_camera
 from naod.pose.fit import Fit, fit_outline
 from naod.pose.objects import Cylinder, ObjectShape
-from naod.pose.starts import Box, facing, starts
+from naod.pose.starts import Box, facing, first_starts, next_starts
 
 START_POINTS = 80
 FIT_POINTS = 1200
 PROFILES = 240
 POINTS_MIN = 12
+EDGE_FLOOR_PX = 0.1
 DISTINCT_RAD = 0.15
 READINGS = 2
 """A tilt towards the viewer and one away: more readings than these do not differ."""
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
-    """A pose and the edge points, (n, 2) in pixels, it was fitted to. `trust`: their weights."""
+class Outline:
+    """Edge points (n, 2) in pixels with weights (n,), and how coarse they are.
 
-    fit: Fit
+    `grain_px`: their resolution. `clipped`: sides of the picture that cut the object. `missed`:
+    places where an edge was looked for in vain.
+    """
+
     points_px: NDArray[np.float64]
     trust: NDArray[np.float64]
+    grain_px: float
+    clipped: tuple[str, ...]
+    missed: int = 0
+
+    def thinned(self, most: int) -> Outline:
+        """About so many of the points, spread evenly."""
+        every = max(1, len(self.points_px) // most)
+        return replace(self, points_px=self.points_px[::every], trust=self.trust[::every])
 
 
-def readings(blob: Blob, shape: ObjectShape, camera: PinholeCamera) -> list[Reading]:
-    """The poses that fit a blob's boundary, the better one first; none if it has too few points."""
-    points_px = convex_part(blob)
-    if len(points_px) < POINTS_MIN:
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A pose and the edge points it was fitted to."""
+
+    fit: Fit
+    outline: Outline
+
+
+def outline_of(blob: Blob) -> Outline:
+    """A blob's boundary, where it is convex: the shapes looked for are, holes are not."""
+    points = _near_hull(blob.boundary_px, 1.5 * blob.grain_px)
+    return Outline(points, np.ones(len(points)), blob.grain_px, blob.clipped)
+
+
+def first_readings(outline: Outline, shape: ObjectShape, camera: PinholeCamera) -> list[Reading]:
+    """The few poses that fit a blob's outline, the best first; none if it has too few points."""
+    if len(outline.points_px) < POINTS_MIN:
         return []
-    points, focal = camera.normalised(points_px), focal_px(camera)
-    few = points[:: max(1, len(points) // START_POINTS)]
-    found: list[Fit] = []
-    for start in starts(shape, _box(blob, camera), _quadrilateral(blob, points, shape)):
-        fit = fit_outline(shape, start, few, focal, 0.5 * blob.grain_px)
-        if _plausible(fit):
-            found.append(upright(fit, shape))
-    found.sort(key=lambda fit: fit.cost(4.0 * blob.grain_px))
-    every = max(1, len(points) // FIT_POINTS)
-    out = []
-    for fit in _distinct(found)[:READINGS]:
-        final = fit_outline(shape, fit.T_camera_object, points[::every], focal, 0.3 * blob.grain_px)
-        out.append(Reading(upright(final, shape), points_px[::every], np.ones(len(final.weights))))
-    return out
+    return _readings(outline, shape, camera, first_starts(shape, *_figure(outline, shape, camera)))
+
+
+def next_readings(
+    outline: Outline, shape: ObjectShape, camera: PinholeCamera, before: list[Reading]
+) -> list[Reading]:
+    """The few poses that fit a better outline, searched from those found before."""
+    starts = [T for one in before for T in next_starts(shape, one.fit.T_camera_object)]
+    return _readings(outline, shape, camera, starts)
+
+
+def _readings(
+    outline: Outline,
+    shape: ObjectShape,
+    camera: PinholeCamera,
+    starts: list[NDArray[np.float64]],
+) -> list[Reading]:
+    few, many = outline.thinned(START_POINTS), outline.thinned(FIT_POINTS)
+    tried = (_fit(few, shape, camera, start, 0.5 * outline.grain_px) for start in starts)
+    found = [fit for fit in tried if fit is not None]
+    found.sort(key=lambda fit: fit.cost(4.0 * outline.grain_px))
+    finer = (
+        _fit(many, shape, camera, fit.T_camera_object, 0.3 * outline.grain_px)
+        for fit in _distinct(found)[:READINGS]
+    )
+    return [Reading(fit, many) for fit in finer if fit is not None]
+
+
+def seen_on_picture(
+    reading: Reading,
+    yuyv: NDArray[np.uint8],
+    shape: ObjectShape,
+    camera: PinholeCamera,
+    reach_px: float,
+    reach_share: float = 0.0,
+) -> Outline | None:
+    """The picture's own edges near a reading; None where too few are seen.
+
+    Near is `reach_px`, or `reach_share` of the object's width if that is more.
+    """
+    places, normals, width = profile_places(reading.fit.T_camera_object, shape, camera)
+    reach = max(reach_px, reach_share * width)
+    edges = measure_edges(yuyv, places, normals, reach, 0.4 * width)
+    if edges.seen.sum() < POINTS_MIN:
+        return None
+    points_px = (places + edges.offset_px[:, None] * normals)[edges.seen]
+    trust = 1.0 / (EDGE_FLOOR_PX**2 + edges.sigma_px[edges.seen] ** 2)
+    missed = int((edges.within & ~edges.seen).sum())
+    return Outline(points_px, trust / trust.max(), 0.5, reading.outline.clipped, missed)
 
 
 def on_picture(
@@ -61,35 +121,33 @@ def on_picture(
     yuyv: NDArray[np.uint8],
     shape: ObjectShape,
     camera: PinholeCamera,
-    reaches_px: tuple[float, ...],
+    reach_px: float,
 ) -> Reading | None:
-    """The same pose fitted to the picture's edges near its outline; None where too few are seen.
+    """A reading fitted to the picture's own edges near it."""
+    outline = seen_on_picture(reading, yuyv, shape, camera, reach_px)
+    if outline is None:
+        return None
+    fit = _fit(outline, shape, camera, reading.fit.T_camera_object, 0.15)
+    return None if fit is None else Reading(fit, outline)
 
-    `reaches_px`: how far to look for them, one round each.
-    """
-    for reach in reaches_px:
-        places, normals, depth = profile_places(reading.fit.T_camera_object, shape, camera)
-        edges = measure_edges(yuyv, places, normals, reach, 0.4 * depth)
-        if edges.seen.sum() < POINTS_MIN:
-            return None
-        points_px = (places + edges.offset_px[:, None] * normals)[edges.seen]
-        trust = 1.0 / (0.1**2 + edges.sigma_px[edges.seen] ** 2)
-        trust /= trust.max()
-        fit = fit_outline(
-            shape, reading.fit.T_camera_object, camera.normalised(points_px), focal_px(camera),
-            0.15, trust,
-        )  # fmt: skip
-        if not _plausible(fit):
-            return None
-        reading = Reading(upright(fit, shape), points_px, trust)
-    return reading
+
+def _fit(
+    outline: Outline,
+    shape: ObjectShape,
+    camera: PinholeCamera,
+    start: NDArray[np.float64],
+    floor_px: float,
+) -> Fit | None:
+    points = camera.normalised(outline.points_px)
+    fit = fit_outline(shape, start, points, focal_px(camera), floor_px, outline.trust)
+    return upright(fit, shape) if _plausible(fit) else None
 
 
 def profile_places(
     T_camera_object: NDArray[np.float64], shape: ObjectShape, camera: PinholeCamera
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
     """Places (n, 2) along the outline in pixels, unit normals (n, 2) outwards, and its width."""
-    points, names = outline_in_camera(shape, T_camera_object)
+    points, _ = outline_in_camera(shape, T_camera_object)
     corners = camera.project(points)
     chords = np.diff(corners, axis=0)
     lengths = np.linalg.norm(chords, axis=1)
@@ -105,7 +163,6 @@ def profile_places(
     keep = np.ones(count, dtype=np.bool_)
     if not isinstance(shape, Cylinder):
         keep = np.minimum(part, lengths[piece] - part) > 2.0
-    del names
     return places[keep], normals[keep], float(min(size))
 
 
@@ -114,22 +171,19 @@ def focal_px(camera: PinholeCamera) -> float:
     return math.sqrt(camera.fx * camera.fy)
 
 
-def convex_part(blob: Blob) -> NDArray[np.float64]:
-    """Boundary points near the blob's hull: the outlines looked for are convex, holes are not."""
-    points = blob.boundary_px
+def _near_hull(points: NDArray[np.float64], within: float) -> NDArray[np.float64]:
     if len(points) < 3:
         return points
     hull = cv2.convexHull(points.astype(np.float32)).reshape(-1, 2).astype(np.float64)
-    after = np.roll(hull, -1, axis=0)
-    edge = after - hull
+    edge = np.roll(hull, -1, axis=0) - hull
     length = np.maximum(np.linalg.norm(edge, axis=1), 1e-9)
     normal = np.column_stack([-edge[:, 1], edge[:, 0]]) / length[:, None]
     depth = np.abs(points @ normal.T - (hull * normal).sum(axis=1)).min(axis=1)
-    return points[depth < 1.5 * blob.grain_px]
+    return points[depth < within]
 
 
 def upright(fit: Fit, shape: ObjectShape) -> Fit:
-    """The same outline with y towards the top of the picture and, for a cylinder, z to the camera."""
+    """The same outline with y towards the top of the picture; a cylinder's z to the camera."""
     T = fit.T_camera_object.copy()
     if isinstance(shape, Cylinder):
         axis = T[:3, 1] if T[1, 1] <= 0.0 else -T[:3, 1]
@@ -162,9 +216,27 @@ def _angle(R1: NDArray[np.float64], R2: NDArray[np.float64]) -> float:
     return math.acos(min(max(float(cosine), -1.0), 1.0))
 
 
-def _box(blob: Blob, camera: PinholeCamera) -> Box:
-    middles = (blob.corners_px + np.roll(blob.corners_px, -1, axis=0)) / 2.0
-    slack = 1.5 * blob.grain_px
+def _figure(
+    outline: Outline, shape: ObjectShape, camera: PinholeCamera
+) -> tuple[Box, NDArray[np.float64] | None]:
+    """Oriented box and, for a whole rectangle, quadrilateral, both on the plane z = 1."""
+    points = outline.points_px
+    corners = oriented_box(points)
+    box = Box(camera.normalised(corners), _cut(outline, corners, camera))
+    if isinstance(shape, Cylinder) or outline.clipped:
+        return box, None
+    four = np.asarray(cv2.approxPolyN(points.astype(np.float32), 4)).reshape(-1, 2)
+    if len(four) != 4:
+        return box, None
+    return box, camera.normalised(ordered_corners(four.astype(np.float64)))
+
+
+def _cut(
+    outline: Outline, corners: NDArray[np.float64], camera: PinholeCamera
+) -> NDArray[np.bool_]:
+    """Which edges of a box (4, 2) in pixels are the picture's border."""
+    middles = (corners + np.roll(corners, -1, axis=0)) / 2.0
+    slack = 2.0 * outline.grain_px + 2.0
     near = {
         "left": middles[:, 0] < slack,
         "right": middles[:, 0] > camera.width - 1 - slack,
@@ -172,15 +244,6 @@ def _box(blob: Blob, camera: PinholeCamera) -> Box:
         "bottom": middles[:, 1] > camera.height - 1 - slack,
     }
     cut = np.zeros(4, dtype=np.bool_)
-    for side in blob.clipped:
+    for side in outline.clipped:
         cut |= near[side]
-    return Box(camera.normalised(blob.corners_px), cut)
-
-
-def _quadrilateral(
-    blob: Blob, points: NDArray[np.float64], shape: ObjectShape
-) -> NDArray[np.float64] | None:
-    if isinstance(shape, Cylinder) or blob.clipped:
-        return None
-    corners = np.asarray(cv2.approxPolyN(points.astype(np.float32), 4)).reshape(-1, 2)
-    return ordered_corners(corners.astype(np.float64)) if len(corners) == 4 else None
+    return cut

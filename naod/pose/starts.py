@@ -85,14 +85,24 @@ def facing(axis: NDArray[np.float64], centre: NDArray[np.float64]) -> NDArray[np
     return np.column_stack([np.cross(y, z), y, z])
 
 
-def starts(
+def first_starts(
     shape: ObjectShape, box: Box, quadrilateral: NDArray[np.float64] | None
 ) -> list[NDArray[np.float64]]:
-    """Poses (4, 4) to start from. `quadrilateral`: (4, 2), like a box's corners, if there is one."""
+    """Poses (4, 4) to start from. `quadrilateral`: (4, 2), ordered as a box's corners are."""
     if isinstance(shape, Cylinder):
         return _cylinder_starts(shape, box)
     found = [] if quadrilateral is None else _rectangle_starts(shape, quadrilateral)
     return found or _clipped_rectangle_starts(shape, box)
+
+
+def next_starts(shape: ObjectShape, T: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """A pose found and its other readings, to start again from on better edges."""
+    if not isinstance(shape, Cylinder):
+        return [T, mirrored(T)]
+    centre = T[:3, 3]
+    forward = centre / np.linalg.norm(centre)
+    up = T[:3, 1] - (T[:3, 1] @ forward) * forward
+    return [T, *_fan(up, forward, centre)] if np.linalg.norm(up) > 1e-6 else [T]
 
 
 def cylinder_from_sides(
@@ -146,8 +156,14 @@ def _tilted_cylinders(shape: Cylinder, box: Box) -> list[NDArray[np.float64]]:
     centre = forward * distance
     forward /= np.linalg.norm(forward)
     up = np.append(box.up, 0.0)
-    up -= (up @ forward) * forward
-    up /= np.linalg.norm(up)
+    return _fan(up - (up @ forward) * forward, forward, centre)
+
+
+def _fan(
+    up: NDArray[np.float64], forward: NDArray[np.float64], centre: NDArray[np.float64]
+) -> list[NDArray[np.float64]]:
+    """Cylinders tilted to and fro in the plane of the line of sight."""
+    up = up / np.linalg.norm(up)
     axes = (math.cos(tilt) * up - math.sin(tilt) * forward for tilt in TILTS_RAD)
     return [pose(facing(axis, centre), centre) for axis in axes]
 
