@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: setup demo test lint bench clean
+.PHONY: setup demo test lint bench evaluate clean
 
 setup: $(STAMP)
 
@@ -25,6 +25,9 @@ lint: setup
 
 bench: setup
 	$(BIN)/naod bench $(ARGS)
+
+evaluate: setup
+	$(BIN)/python -m pytest -m slow $(ARGS)
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info
