@@ -18,7 +18,8 @@ Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
 Fraction = Annotated[float, Meta(ge=0.0, le=1.0)]
 Count = Annotated[int, Meta(gt=0)]
-RobotName = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,32}$")]
+ROBOT_NAME = r"^[A-Za-z0-9_-]{1,32}$"
+RobotName = Annotated[str, Meta(pattern=ROBOT_NAME)]
 
 
 class _Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import queue
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +13,7 @@ import zenoh
 from naod.bus import keys
 from naod.bus.session import open_client
 from naod.bus.wire import encode
+from naod.config import ROBOT_NAME
 from naod.errors import InputError, NaodError
 from naod.messages import Message, NoArguments
 
@@ -32,10 +34,8 @@ class Client:
     def __init__(self, endpoint: str, robot: str) -> None:
         self.endpoint = endpoint
         self.robot = robot
-        try:
-            zenoh.KeyExpr(self.key(keys.STATE))
-        except zenoh.ZError:
-            raise InputError(f"--robot {robot!r} cannot be a robot's name") from None
+        if not re.match(ROBOT_NAME, robot):
+            raise InputError(f"robot {robot!r}: use 1 to 32 letters, digits, - or _")
         self._session: Any = open_client(endpoint)
         self._declared: list[Any] = []
 

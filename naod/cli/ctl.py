@@ -11,16 +11,12 @@ from naod.cli import ctl_drive, ctl_verbs, ctl_watch
 LOOPBACK = "tcp/127.0.0.1:7447"
 
 # argparse takes -1e-3 for an option unless told what a number looks like
-_NEGATIVE = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+_NEGATIVE = re.compile(r"^-([\d.][\d.,eE+-]*|inf|nan)$")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command line of `naod ctl`."""
-    parser.add_argument(
-        "--connect", default=LOOPBACK, metavar="ENDPOINT", help=f"default: {LOOPBACK}"
-    )
-    parser.add_argument("--robot", default="nao", metavar="NAME", help="default: nao")
-    parser.add_argument("--json", action="store_true", help="answers as JSON on stdout")
+    _add_common(parser, LOOPBACK, "nao", False)
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
 
     def verb(
@@ -28,11 +24,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ) -> argparse.ArgumentParser:
         sub = verbs.add_parser(name, help=text, description=text)
         sub._negative_number_matcher = _NEGATIVE
+        # the same options after the verb, without undoing those before it
+        _add_common(sub, *[argparse.SUPPRESS] * 3)
         sub.set_defaults(carry_out=carry_out)
         return sub
 
     _add_simple(verb)
     _add_moving(verb)
+
+
+def _add_common(
+    parser: argparse.ArgumentParser, connect: str, robot: str, json: bool | str
+) -> None:
+    add = parser.add_argument
+    add("--connect", default=connect, metavar="ENDPOINT", help=f"default: {LOOPBACK}")
+    add("--robot", default=robot, metavar="NAME", help="default: nao")
+    add("--json", action="store_true", default=json, help="answers as JSON on stdout")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -10,7 +10,7 @@ import time
 
 from naod.bus import keys
 from naod.bus.client import Client
-from naod.cli.ctl_verbs import open_for
+from naod.cli.ctl_verbs import open_for, seconds_of
 from naod.cli.output import Progress, print_json
 from naod.errors import InputError
 from naod.messages import HeadCommand, WalkCommand
@@ -18,12 +18,11 @@ from naod.messages import HeadCommand, WalkCommand
 RENEW_S = 0.1
 WALK_TTL_MS = 300
 HEAD_TTL_MS = 1000
-SECONDS_MAX = 600.0
 
 
 def walk(args: argparse.Namespace) -> int:
     """Walk for some seconds, then stop; also when interrupted."""
-    seconds = _seconds(args)
+    seconds = seconds_of(args)
     for name in ("vx", "vy", "wz"):
         _finite(name.upper(), getattr(args, name))
     with open_for(args) as client:
@@ -39,7 +38,7 @@ def walk(args: argparse.Namespace) -> int:
 
 def head(args: argparse.Namespace) -> int:
     """Turn the head and hold it for some seconds."""
-    seconds = _seconds(args)
+    seconds = seconds_of(args)
     yaw, pitch = (math.radians(_finite(n.upper(), getattr(args, n))) for n in ("yaw", "pitch"))
     source, end = _source(), time.monotonic() + seconds
     with open_for(args) as client:
@@ -102,10 +101,3 @@ def _finite(name: str, value: float) -> float:
     if not math.isfinite(value):
         raise InputError(f"{name} is not a finite number")
     return value
-
-
-def _seconds(args: argparse.Namespace) -> float:
-    seconds = float(args.seconds)
-    if not 0.0 < seconds <= SECONDS_MAX:
-        raise InputError(f"--for {seconds:g}: give seconds, more than 0, at most {SECONDS_MAX:g}")
-    return seconds

@@ -14,6 +14,8 @@ from naod.messages import GoalCall, LabelCall, Message
 LEARNING_S = 35.0
 """Teaching waits for the object to be seen centred, up to 20 s."""
 
+SECONDS_MAX = 86400.0
+
 DONE = {
     "stop": "stopped",
     "estop": "stopped and latched; `naod ctl release` lets go",
@@ -24,6 +26,14 @@ DONE = {
 def open_for(args: argparse.Namespace) -> Client:
     """The robot that the command line names."""
     return Client(args.connect, args.robot)
+
+
+def seconds_of(args: argparse.Namespace) -> float:
+    """The seconds after --for. Raises InputError."""
+    seconds = float(args.seconds)
+    if not 0.0 < seconds <= SECONDS_MAX:
+        raise InputError(f"--for {seconds:g}: give seconds, more than 0, at most {SECONDS_MAX:g}")
+    return seconds
 
 
 def simple(args: argparse.Namespace) -> int:

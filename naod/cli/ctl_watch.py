@@ -12,7 +12,7 @@ from typing import Any
 
 from naod.bus import keys
 from naod.bus.client import Client
-from naod.cli.ctl_verbs import open_for
+from naod.cli.ctl_verbs import open_for, seconds_of
 from naod.cli.output import Progress, print_json
 from naod.errors import InputError
 from naod.messages import GoalCall
@@ -59,7 +59,7 @@ class Follower:
 
 def watch(args: argparse.Namespace) -> int:
     """Print what happens."""
-    deadline = math.inf if args.seconds is None else time.monotonic() + args.seconds
+    deadline = math.inf if args.seconds is None else time.monotonic() + seconds_of(args)
     with open_for(args) as client:
         follower = Follower(client, FOLLOWED)
         client.call("watch")
@@ -77,7 +77,7 @@ def start(args: argparse.Namespace) -> int:
         if follower is None:
             print_json(answer) if args.json else print(f"on the way to {args.goal}")
             return 0
-        limit_s = APPROACH_S if args.seconds is None else args.seconds
+        limit_s = APPROACH_S if args.seconds is None else seconds_of(args)
         phase, why = _see_through(follower, args.goal, time.monotonic() + limit_s)
     if args.json:
         print_json({"ok": True, "goal": args.goal, "phase": phase, "message": why})
