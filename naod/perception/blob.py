@@ -113,7 +113,7 @@ def _full(points: NDArray[np.float64], grain_px: float) -> NDArray[np.float64]:
 
 
 def _box(
-    points: NDArray[np.float64], rows: NDArray[np.int64], shape: tuple[int, int]
+    points: NDArray[np.float64], rows: NDArray[np.int64], shape: tuple[int, ...]
 ) -> NDArray[np.float64]:
     """Oriented box of the region in mask pixels, its cut sides included."""
     left, right = rows[:, LEFT].min() - 0.5, rows[:, RIGHT].max() + 0.5
@@ -123,7 +123,7 @@ def _box(
     return oriented_box(points)
 
 
-def _clipped(rows: NDArray[np.int64], shape: tuple[int, int]) -> tuple[str, ...]:
+def _clipped(rows: NDArray[np.int64], shape: tuple[int, ...]) -> tuple[str, ...]:
     height, width = shape
     cut = {
         "left": rows[:, LEFT].min() == 0,

@@ -23,10 +23,17 @@ LIMIT = 1 << 20
 
 
 class Singletons:
-    """Energy of one pixel under a colour model against a constant background."""
+    """Energy of one pixel under a colour model against a constant background.
 
-    def __init__(self, model: ColourModel, background_energy: float) -> None:
-        covariance = np.array(model.covariance)
+    `light_std` widens the Gaussian along the line of colours that one surface has in more or less
+    light, Y : U - 128 : V - 128 staying in proportion.
+    """
+
+    def __init__(
+        self, model: ColourModel, background_energy: float, light_std: float = 0.0
+    ) -> None:
+        shades = light_std * (np.array(model.mean) - (0.0, 128.0, 128.0))
+        covariance = np.array(model.covariance) + np.outer(shades, shades)
         log_g = 0.5 * (3.0 * math.log(2.0 * math.pi) + float(np.linalg.slogdet(covariance)[1]))
         self.offset = log_g - background_energy
         self.mean = np.array(model.mean, dtype=np.float32)

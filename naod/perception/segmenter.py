@@ -39,7 +39,7 @@ class Segmenter:
     ) -> None:
         self.settings = settings
         self.reduction = Reduction(size, settings.width)
-        self.singletons = Singletons(model, settings.background_energy)
+        self.singletons = Singletons(model, settings.background_energy, settings.light_std)
         shape = (self.reduction.height, self.reduction.width)
         self._differences = np.zeros(shape, dtype=np.int32)
         self._labels = np.zeros(shape, dtype=np.uint8)

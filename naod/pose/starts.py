@@ -59,9 +59,9 @@ class Box:
     def centre(self, across: float, along: float) -> NDArray[np.float64]:
         """(2,) middle of the object were it `across` wide and `along` high: held by whole edges."""
         up, right = self.up, self.turned().up
-        middle = self.corners.mean(axis=0)
+        middle = np.asarray(self.corners.mean(axis=0), dtype=np.float64)
         lack_along, lack_across = (along - self.along) / 2.0, (across - self.across) / 2.0
-        middle = middle + up * lack_along * (int(self.cut[0]) - int(self.cut[2]))
+        middle = middle + up * (lack_along * (int(self.cut[0]) - int(self.cut[2])))
         return middle + right * lack_across * (int(self.cut[1]) - int(self.cut[3]))
 
 

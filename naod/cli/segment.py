@@ -1,0 +1,90 @@
+"""`naod segment`: masks from pictures, folders or a video."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from naod.cli.output import Progress, print_json
+from naod.cli.pictures import Picture, find_files, read_pictures
+from naod.config import SegmentationConfig
+from naod.files import write_whole
+from naod.perception.blob import find_blob
+from naod.perception.colour_model import ColourModel, load_model
+from naod.perception.fullsize import full_mask
+from naod.perception.segmenter import Segmenter
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """INPUT... --model MODEL.toml [--out DIR] [--json]."""
+    parser.add_argument("inputs", nargs="+", metavar="INPUT", help="pictures, folders or videos")
+    parser.add_argument("--model", required=True, type=Path, metavar="MODEL.toml")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write masks there, 255 = object")
+    parser.add_argument("--json", action="store_true", help="one JSON line per picture")
+
+
+class Segmenters:
+    """One segmenter per size of picture, its kernels warm before the first one is timed."""
+
+    def __init__(self, model: ColourModel) -> None:
+        self._model = model
+        self._settings = SegmentationConfig()
+        self._by_size: dict[tuple[int, int], Segmenter] = {}
+
+    def of(self, picture: Picture) -> Segmenter:
+        """The segmenter for a picture's size."""
+        size = picture.padded_size
+        if size not in self._by_size:
+            segmenter = Segmenter(self._model, self._settings, size)
+            segmenter.segment(picture.yuyv)
+            self._by_size[size] = segmenter
+        return self._by_size[size]
+
+
+def run(args: argparse.Namespace) -> int:
+    """Segment everything, a line each."""
+    segmenters = Segmenters(load_model(args.model))
+    files = find_files(args.inputs)
+    progress = Progress("segmenting")
+    for picture in read_pictures(files):
+        line, mask = _segment(segmenters.of(picture), picture)
+        if args.out is not None:
+            png = cv2.imencode(".png", mask)[1].tobytes()
+            write_whole(args.out / f"{picture.stem}.png", png)
+        if args.json:
+            print_json(line)
+        else:
+            print(_readable(line))
+        progress.tick(picture.stem)
+    progress.done()
+    return 0
+
+
+def _segment(segmenter: Segmenter, picture: Picture) -> tuple[dict[str, object], NDArray[np.uint8]]:
+    start = time.perf_counter()
+    segmentation = segmenter.segment(picture.yuyv)
+    blob = find_blob(segmentation, segmenter.settings.pixels_min)
+    elapsed = time.perf_counter() - start
+    labels = full_mask(segmenter, segmentation, picture.yuyv)[:, : picture.width]
+    line: dict[str, object] = {
+        "input": picture.source,
+        "found": blob is not None,
+        "pixels": int(np.count_nonzero(labels)),
+        "energy": segmentation.energy,
+        "iterations": segmentation.iterations,
+        "ms": round(elapsed * 1e3, 3),
+    }
+    return line, np.ascontiguousarray(labels * np.uint8(255))
+
+
+def _readable(line: dict[str, object]) -> str:
+    found = "found" if line["found"] else "not found"
+    return (
+        f"{line['input']}: {found}, {line['pixels']} pixels, energy {line['energy']:.0f}, "
+        f"{line['iterations']} sweeps, {line['ms']} ms"
+    )
