@@ -5,13 +5,14 @@ from __future__ import annotations
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
 
 from hal.types import Frame
 from hal.yuyv import rgb_from_yuyv
 from naod.geometry.camera import PinholeCamera
 from naod.loop.equipment import Sighting
 
-_GREEN, _YELLOW, _WHITE = (60, 220, 60), (255, 220, 40), (255, 255, 255)
+_GREEN, _YELLOW, _WHITE, _INK = (60, 220, 60), (255, 220, 40), (255, 255, 255), (0, 0, 0)
 _AXES = ((255, 60, 60), (60, 255, 60), (80, 120, 255))
 
 
@@ -21,25 +22,25 @@ def annotated(
     """The frame as (H, W, 3) RGB uint8, drawn on."""
     picture = np.ascontiguousarray(rgb_from_yuyv(frame.yuyv))
     if sighting is None:
-        _write(picture, "not seen", 0)
-        return picture
+        return _written(picture, "not seen")
     _draw_mask(picture, sighting.segmentation.mask)
     if sighting.pose is not None:
         corners = np.rint(sighting.pose.corners_px).astype(np.int32).reshape(-1, 1, 2)
         cv2.polylines(picture, [corners], True, _YELLOW, 1, cv2.LINE_AA)
         _draw_axes(picture, sighting.pose.T_camera_object, camera, axis_m)
-    if sighting.look is not None:
-        ego = sighting.look.ego
-        _write(picture, f"rho {ego.rho_m:.3f} m  theta {np.degrees(ego.theta_rad):+.1f} deg", 0)
-        _write(picture, f"z {ego.z_m:.3f} m  phi {np.degrees(ego.phi_rad):+.1f} deg", 1)
-    return picture
+    if sighting.look is None:
+        return picture
+    ego = sighting.look.ego
+    theta, phi = np.degrees(ego.theta_rad), np.degrees(ego.phi_rad)
+    first = f"rho {ego.rho_m:.3f} m   theta {theta:+.1f}°"
+    return _written(picture, f"{first}\nz {ego.z_m:.3f} m   phi {phi:+.1f}°")
 
 
 def _draw_mask(picture: NDArray[np.uint8], mask: NDArray[np.uint8]) -> None:
     height, width = picture.shape[:2]
     large = cv2.resize(mask, (width, height), interpolation=cv2.INTER_NEAREST)
     inside = large > 0
-    picture[inside] = (0.65 * picture[inside] + 0.35 * np.array(_GREEN)).astype(np.uint8)
+    picture[inside] = (0.8 * picture[inside] + 0.2 * np.array(_GREEN)).astype(np.uint8)
     outlines, _ = cv2.findContours(large, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     cv2.drawContours(picture, outlines, -1, _GREEN, 1)
 
@@ -55,7 +56,8 @@ def _draw_axes(
         cv2.arrowedLine(picture, origin, tip, colour, 2, cv2.LINE_AA, tipLength=0.2)
 
 
-def _write(picture: NDArray[np.uint8], text: str, row: int) -> None:
-    place = (8, 20 + 20 * row)
-    cv2.putText(picture, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.5, (0, 0, 0), 3, cv2.LINE_AA)
-    cv2.putText(picture, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.5, _WHITE, 1, cv2.LINE_AA)
+def _written(picture: NDArray[np.uint8], text: str) -> NDArray[np.uint8]:
+    image = Image.fromarray(picture)
+    font = ImageFont.load_default(size=18)
+    ImageDraw.Draw(image).text((8, 6), text, _WHITE, font, stroke_width=2, stroke_fill=_INK)
+    return np.array(image)

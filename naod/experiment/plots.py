@@ -26,8 +26,12 @@ def figure_10(
     room_end: NDArray[np.uint8],
     way: Sequence[Truth],
     shown: Truth,
+    round_object: bool,
 ) -> None:
-    """The room before and after, and between them the way from above."""
+    """The room before and after, and between them the way from above.
+
+    Around a `round_object` a circle shows all the poses that look like the one shown.
+    """
     figure, axes = plt.subplots(1, 3, figsize=(15, 4.4), gridspec_kw={"width_ratios": [1, 1.1, 1]})
     for axis, picture, title in (
         (axes[0], room_start, "start"),
@@ -36,7 +40,7 @@ def figure_10(
         axis.imshow(picture)
         axis.set_title(title)
         axis.axis("off")
-    _way_from_above(axes[1], way, shown)
+    _way_from_above(axes[1], way, shown, round_object)
     _save(figure, path)
 
 
@@ -88,11 +92,17 @@ def figure_12(path: Path, rows: Sequence[LocalisationRow]) -> None:
     _save(figure, path)
 
 
-def _way_from_above(axis: Axes, way: Sequence[Truth], shown: Truth) -> None:
+def _way_from_above(axis: Axes, way: Sequence[Truth], shown: Truth, round_object: bool) -> None:
     x, y = [t.base.x for t in way], [t.base.y for t in way]
     axis.plot(x, y, color=_EXACT, lw=1.5, label="way walked")
     place = shown.T_world_object[:3, 3]
     axis.plot(place[0], place[1], "s", color=_TRUE, ms=9, label="object")
+    if round_object:
+        radius = math.hypot(shown.base.x - place[0], shown.base.y - place[1])
+        label = "poses that look like it"
+        axis.add_patch(
+            plt.Circle(place[:2], radius, fill=False, color=_PAPER, ls=":", lw=1, label=label)
+        )
     _robot(axis, shown.base.x, shown.base.y, shown.base.yaw, _PAPER, "pose shown")
     if way:
         _robot(axis, x[0], y[0], way[0].base.yaw, _INK, "start")
@@ -126,5 +136,5 @@ def _y(ego: EgoRow) -> float:
 
 def _save(figure: plt.Figure, path: Path) -> None:
     figure.tight_layout()
-    figure.savefig(path, dpi=110)
+    figure.savefig(path, dpi=110, bbox_inches="tight")
     plt.close(figure)

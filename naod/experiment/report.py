@@ -15,6 +15,7 @@ from naod.experiment.approach_run import Outcome
 from naod.experiment.lockstep import LockStep, Tick
 from naod.experiment.plots import figure_10, figure_11, figure_12
 from naod.files import write_whole
+from naod.pose.objects import Cylinder
 
 ROOM_SIZE = (640, 480)
 FILM_SIZE = (400, 300)
@@ -44,7 +45,10 @@ class Film:
         """Write it as an animated GIF, with one palette so that colours do not flicker."""
         if not self._pictures:
             return
-        palette = self._pictures[len(self._pictures) // 2].quantize(128)
+        few = self._pictures[:: max(1, len(self._pictures) // 6)]
+        palette = Image.fromarray(np.vstack([np.asarray(p) for p in few])).quantize(
+            200, method=Image.Quantize.MAXCOVERAGE
+        )
         reduced = [p.quantize(palette=palette, dither=Image.Dither.NONE) for p in self._pictures]
         first, *others = reduced
         times = [150] * len(others) + [2500]
@@ -57,7 +61,9 @@ def write_report(
     """Write summary.json, the three figures and the frames into a folder."""
     summary = msgspec.json.format(msgspec.json.encode(outcome.summary), indent=1)
     room_end = run.robot.room_view(*ROOM_SIZE)
-    figure_10(folder / "figure_10.png", room_start, room_end, outcome.journal.way, outcome.shown)
+    way, shown = outcome.journal.way, outcome.shown
+    round_object = isinstance(run.equipment.shape, Cylinder)
+    figure_10(folder / "figure_10.png", room_start, room_end, way, shown, round_object)
     figure_11(folder / "figure_11.png", outcome.summary.localisation)
     figure_12(folder / "figure_12.png", outcome.summary.localisation)
     frames = folder / "frames"
