@@ -96,6 +96,7 @@ class Bus:
                 return
             on_message(message)
 
+        _check_thread()
         self._declared.append(self.session.declare_subscriber(self.key(name), receive))
 
     def answer(
@@ -123,6 +124,7 @@ class Bus:
                 log.exception("rpc %s failed", verb)
                 answer.error("internal", "the daemon could not do it; see its log")
 
+        _check_thread()
         self._declared.append(self.session.declare_queryable(whole, receive))
 
     def announce(self) -> None:
@@ -152,6 +154,15 @@ class Bus:
                 )
                 self._publishers[name] = publisher
             return publisher
+
+
+def _check_thread() -> None:
+    """zenoh's callback threads inherit the daemon flag of the thread that declares them.
+
+    A daemon thread inside zenoh while the interpreter closes down aborts the process.
+    """
+    if threading.current_thread().daemon:
+        raise RuntimeError("declare subscribers and queryables from a thread that is joined")
 
 
 def _taken(sample: Any, kind: type[T]) -> T:

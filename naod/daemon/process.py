@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import logging
+import queue
 import signal
 import sys
-import threading
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from types import FrameType
+from typing import Literal
 
 from hal.protocols import Robot
 from hal.simulation import SimulatedRobot
@@ -33,6 +34,9 @@ from naod.walk_server.server import WalkServer
 
 log = logging.getLogger("naod")
 
+News = queue.SimpleQueue[Literal["warm", "ended", "stop"]]
+"""What the main thread waits for: the kernels are compiled, a thread has ended, a signal came."""
+
 
 def run_daemon(config: DaemonConfig, beside: Path) -> int:
     """Run until told to stop: 0 after a signal, 1 when a part of us ended by itself.
@@ -42,27 +46,31 @@ def run_daemon(config: DaemonConfig, beside: Path) -> int:
     logging.basicConfig(
         level=config.log.level.upper(), stream=sys.stderr, format="naod: %(levelname)s: %(message)s"
     )
-    ended, stopped = threading.Event(), threading.Event()
+    news: News = queue.SimpleQueue()
 
     def stop(_number: int, _frame: FrameType | None) -> None:
-        stopped.set()
-        ended.set()
+        news.put("stop")
 
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, stop)
     with ExitStack() as stack:
         notifier = Notifier.from_environment()
         stack.callback(notifier.close)
-        _open(config, beside, stack, notifier, ended)
-        ended.wait()
+        verbs = _open(config, beside, stack, notifier, news)
+        told = news.get()
+        if told == "warm":
+            verbs.declare()
+            notifier.ready()
+            log.info("ready")
+            told = news.get()
         notifier.stopping()
         log.info("stopping")
-    return 0 if stopped.is_set() else 1
+    return 0 if told == "stop" else 1
 
 
 def _open(
-    config: DaemonConfig, beside: Path, stack: ExitStack, notifier: Notifier, ended: threading.Event
-) -> None:
+    config: DaemonConfig, beside: Path, stack: ExitStack, notifier: Notifier, news: News
+) -> Verbs:
     """Open every part; the stack closes them the other way round."""
     store = Store(state_folder(config))
     state = LoopState.initial(store.goals(), store.model())
@@ -74,7 +82,7 @@ def _open(
 
     server = WalkServer(robot, bus, Rules.from_config(config.walk), store.latch)
     stack.callback(server.close)
-    server.on_end = ended.set
+    server.on_end = partial(news.put, "ended")
     server.start()
     if isinstance(robot, SimulatedRobot):
         teller = TruthTeller(robot, bus)
@@ -90,21 +98,19 @@ def _open(
     stack.callback(server.close)
     verbs = Verbs(bus, _robot_message(robot), server, loop, actor, desk)
     loop.after_tick = notifier.alive
-    loop.on_end = ended.set
-    loop.before_first = partial(_begin, equipment, robot, bus, verbs, notifier)
+    loop.on_end = partial(news.put, "ended")
+    loop.before_first = partial(_begin, equipment, robot, news)
     endpoints = ", ".join(config.bus.listen) or "no endpoint"
     log.info("robot %s (%s), listening on %s", robot.info.name, robot.info.backend, endpoints)
     log.info("state folder %s", store.folder)
     loop.start()
+    return verbs
 
 
-def _begin(equipment: Equipment, robot: Robot, bus: Bus, verbs: Verbs, notifier: Notifier) -> None:
-    """The last steps before the first tick, in the loop's own thread."""
+def _begin(equipment: Equipment, robot: Robot, news: News) -> None:
+    """In the loop's own thread, before its first tick."""
     warm_up(equipment, robot.body.latest())
-    verbs.declare()
-    bus.announce()
-    notifier.ready()
-    log.info("ready")
+    news.put("warm")
 
 
 def _robot_message(robot: Robot) -> RobotMessage:

@@ -44,7 +44,7 @@ class Verbs:
         self._desk = desk
 
     def declare(self) -> None:
-        """Begin to answer."""
+        """Begin to answer, and say that the robot is there."""
         refuse = self._server.refuse
         answer = self._bus.answer
         answer("status", NoArguments, self._status, refuse)
@@ -58,6 +58,7 @@ class Verbs:
         answer("release", NoArguments, self._release, refuse)
         answer("walk", WalkCommand, self._walk, refuse)
         answer("head", HeadCommand, self._head, refuse)
+        self._bus.announce()
 
     def _status(self, _call: NoArguments, answer: Answer) -> None:
         state = self._loop.state
