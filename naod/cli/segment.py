@@ -41,7 +41,7 @@ class Segmenters:
         size = picture.padded_size
         if size not in self._by_size:
             segmenter = Segmenter(self._model, self._settings, size)
-            segmenter.segment(picture.yuyv)
+            find_blob(segmenter.segment(picture.yuyv))
             self._by_size[size] = segmenter
         return self._by_size[size]
 

@@ -2,8 +2,8 @@
 
 Along each normal the colour goes from one plateau to another. The profile is projected on the
 direction that separates the two best, the changes of brightness that shading makes inside counted
-as noise, and the edge lies where the projection is half-way. Blur in the lens, in motion and in
-the shared chroma of a pair of pixels is symmetric, so it widens the step without moving it.
+as noise, and the edge lies where the projection is that of the colour expected at an edge: blur
+widens the step without moving it.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.linear import solve_symmetric
+from naod.perception.encoding import SPREAD_CHROMA2, SPREAD_LUMA2, lights, mixed_colour
 
 STEP_PX = 0.5
 SAMPLES_MAX = 129
@@ -24,6 +25,11 @@ NOISE_LEVELS = 3.0
 
 SHADING = 0.15
 """Relative standard deviation of brightness over a plateau inside."""
+
+MIXING_MIN_PX = 1.2
+"""Light mixes over at least a pixel's own width and what the sharpest lens adds."""
+
+SLOPE_MIN = 0.02
 
 CONTRAST_MIN = 3.0
 """Separation of the plateaus, in standard deviations, below which there is no edge to see."""
@@ -102,42 +108,113 @@ def _plateau(
 
 
 @njit(cache=True, nogil=True)
-def _separation(colours: NDArray[np.float64], count: int, scores: NDArray[np.float64]) -> float:
-    """Projection of a profile, 0 on the inner plateau and 1 on the outer one, and its contrast."""
-    inner, outer = np.empty(3), np.empty(3)
-    scatter, direction, gap = np.zeros((3, 3)), np.empty(3), np.empty(3)
+def _separation(
+    colours: NDArray[np.float64],
+    count: int,
+    inner: NDArray[np.float64],
+    outer: NDArray[np.float64],
+    direction: NDArray[np.float64],
+) -> float:
+    """Plateaus of a profile, the direction that tells them apart, and the contrast along it.
+
+    `direction` is scaled so that it takes the inner plateau to the outer one in a step of 1.
+    """
+    scatter, gap = np.zeros((3, 3)), np.empty(3)
     quarter = max(count // 4, 1)
     _plateau(colours, 0, quarter, inner, scatter)
     _plateau(colours, count - quarter, count, outer, scatter)
-    shade = inner.copy()
-    shade[1] -= 128.0
-    shade[2] -= 128.0
     for c in range(3):
         gap[c] = outer[c] - inner[c]
         scatter[c, c] += NOISE_LEVELS**2
         for d in range(3):
-            scatter[c, d] += SHADING**2 * shade[c] * shade[d]
+            shade_c = inner[c] - (128.0 if c else 0.0)
+            scatter[c, d] += SHADING**2 * shade_c * (inner[d] - (128.0 if d else 0.0))
     solve_symmetric(scatter, gap, direction)
     contrast2 = direction[0] * gap[0] + direction[1] * gap[1] + direction[2] * gap[2]
     if contrast2 < 1e-6:
         return 0.0
-    for k in range(count):
-        total = 0.0
-        for c in range(3):
-            total += direction[c] * (colours[k, c] - inner[c])
-        scores[k] = total / contrast2
+    direction /= contrast2
     return math.sqrt(contrast2)
 
 
 @njit(cache=True, nogil=True)
-def _split(scores: NDArray[np.float64], count: int) -> int:
+def _level_at_edge(
+    inner: NDArray[np.float64],
+    outer: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    nx: float,
+    slope: float,
+    scratch: NDArray[np.float64],
+) -> float:
+    """Projection, 0 inside and 1 outside, of what is seen at the edge itself.
+
+    `slope` of the projected profile, per pixel, tells how far the light mixes.
+    """
+    chroma2 = SPREAD_CHROMA2 * nx * nx + SPREAD_LUMA2 * (1.0 - nx * nx)
+    gathered2 = 0.5 * (SPREAD_LUMA2 + chroma2)
+    width = math.sqrt(max(1.0 / (slope * slope) - 12.0 * gathered2, MIXING_MIN_PX**2))
+    lights(inner, scratch[0])
+    lights(outer, scratch[1])
+    mixed_colour(
+        scratch[0], scratch[1], width, math.sqrt(SPREAD_LUMA2), math.sqrt(chroma2), scratch[2]
+    )
+    total = 0.0
+    for c in range(3):
+        total += direction[c] * (scratch[2, c] - inner[c])
+    return min(max(total, 0.1), 0.9)
+
+
+@njit(cache=True, nogil=True)
+def _split(scores: NDArray[np.float64], count: int, level: float) -> int:
     """Last sample inside, for the step that fits the whole profile best; -1 if there is none."""
     total, best, at = 0.0, 0.0, -1
     for k in range(count - 1):
-        total += 0.5 - min(max(scores[k], -0.2), 1.2)
+        total += level - min(max(scores[k], -0.2), 1.2)
         if total > best:
             best, at = total, k
     return at
+
+
+@njit(cache=True, nogil=True)
+def _slope(scores: NDArray[np.float64], count: int, k: int) -> float:
+    """Rise per pixel about the step after sample k; 0 where the profile ends too soon."""
+    if k < 2 or k > count - 4:
+        return 0.0
+    return (scores[k + 3] - scores[k - 2]) / (5.0 * STEP_PX)
+
+
+@njit(cache=True, nogil=True)
+def _edge(
+    colours: NDArray[np.float64],
+    count: int,
+    nx: float,
+    scores: NDArray[np.float64],
+    scratch: NDArray[np.float64],
+) -> tuple[float, float]:
+    """Place of the edge in a profile, in samples, and its sigma in pixels; infinite if unseen."""
+    inner, outer, direction = scratch[0], scratch[1], scratch[2]
+    contrast = _separation(colours, count, inner, outer, direction)
+    if contrast < CONTRAST_MIN:
+        return 0.0, np.inf
+    for k in range(count):
+        scores[k] = 0.0
+        for c in range(3):
+            scores[k] += direction[c] * (colours[k, c] - inner[c])
+    level = 0.5
+    for _ in range(2):
+        k = _split(scores, count, level)
+        slope = _slope(scores, count, k)
+        if slope < SLOPE_MIN or not scores[k] <= level <= scores[k + 1]:
+            return 0.0, np.inf
+        level = _level_at_edge(inner, outer, direction, nx, slope, scratch[3:])
+    while k > 0 and scores[k] > level:
+        k -= 1
+    while k < count - 2 and scores[k + 1] < level:
+        k += 1
+    step = scores[k + 1] - scores[k]
+    if not step > 0.0:
+        return 0.0, np.inf
+    return k + (level - scores[k]) / step, 1.0 / (contrast * slope)
 
 
 @njit(cache=True, nogil=True)
@@ -154,6 +231,7 @@ def _measure(
 ) -> None:
     height, width = yuyv.shape[0], yuyv.shape[1]
     colours, scores = np.empty((SAMPLES_MAX, 3)), np.empty(SAMPLES_MAX)
+    scratch = np.empty((6, 3))
     for i in range(places.shape[0]):
         seen[i], offset[i], sigma[i] = False, 0.0, np.inf
         x, y = places[i, 0] + reach * normals[i, 0], places[i, 1] + reach * normals[i, 1]
@@ -161,17 +239,10 @@ def _measure(
         if not within[i]:
             continue
         count = _profile(yuyv, places[i], normals[i], reach, depth, colours)
-        contrast = _separation(colours, count, scores)
-        k = _split(scores, count)
-        if contrast < CONTRAST_MIN or k < 2 or k > count - 4 or not scores[k + 1] > scores[k]:
-            continue
-        part = (0.5 - scores[k]) / (scores[k + 1] - scores[k])
-        slope = (scores[k + 3] - scores[k - 2]) / (5.0 * STEP_PX)
-        if not (0.0 <= part <= 1.0 and slope > 0.02):
-            continue
-        offset[i] = (k + part - count // 2) * STEP_PX
-        sigma[i] = 1.0 / (contrast * slope)
-        seen[i] = True
+        place, sigma[i] = _edge(colours, count, normals[i, 0], scores, scratch)
+        if sigma[i] < np.inf:
+            offset[i] = (place - count // 2) * STEP_PX
+            seen[i] = True
 
 
 def measure_edges(

@@ -25,7 +25,7 @@ from naod.pose.search import (
 from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
 
 PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.1, per_point=3.0)
-MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.25, edge_px=0.25, per_point=3.0)
+MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0)
 
 
 NEAR_PX = 4.0

@@ -87,7 +87,7 @@ def _readings(
     found = [fit for fit in tried if fit is not None]
     found.sort(key=lambda fit: fit.cost(4.0 * outline.grain_px))
     finer = (
-        _fit(many, shape, camera, fit.T_camera_object, 0.3 * outline.grain_px)
+        _fit(many, shape, camera, fit.T_camera_object, 0.7 * outline.grain_px)
         for fit in _distinct(found)[:READINGS]
     )
     return [Reading(fit, many) for fit in finer if fit is not None]

@@ -79,7 +79,8 @@ def facing(axis: NDArray[np.float64], centre: NDArray[np.float64]) -> NDArray[np
     length = np.linalg.norm(z)
     if length < 1e-9 * np.linalg.norm(centre):
         # seen exactly along its axis: any z will do
-        z = np.cross(y, (1.0, 0.0, 0.0)) if abs(y[0]) < 0.9 else np.cross(y, (0.0, 1.0, 0.0))
+        other = (1.0, 0.0, 0.0) if abs(y[0]) < 0.9 else (0.0, 1.0, 0.0)
+        z = np.asarray(np.cross(y, other), dtype=np.float64)
         length = np.linalg.norm(z)
     z = z / length
     return np.column_stack([np.cross(y, z), y, z])
