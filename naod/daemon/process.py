@@ -109,7 +109,7 @@ def _open(
 
 def _begin(equipment: Equipment, robot: Robot, news: News) -> None:
     """In the loop's own thread, before its first tick."""
-    warm_up(equipment, robot.body.latest())
+    warm_up(equipment, robot)
     news.put("warm")
 
 

@@ -5,18 +5,35 @@ The first run of the kernels on a machine takes longer than the watchdog waits.
 
 from __future__ import annotations
 
+import logging
+
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.types import BodyState, Frame
+from hal.errors import HalError
+from hal.protocols import Robot
+from hal.types import Frame
 from naod.loop.equipment import Equipment
 from naod.perception.colour_model import Region, learn
+
+log = logging.getLogger(__name__)
 
 _GREY, _RED = (120, 128, 128), (90, 100, 210)
 
 
-def warm_up(equipment: Equipment, body: BodyState) -> None:
-    """Learn and localise a painted object; nothing of it is kept."""
+FIRST_PICTURE_S = 5.0
+
+
+def warm_up(equipment: Equipment, robot: Robot) -> None:
+    """Take a picture, then learn and localise a painted object; nothing of it is kept.
+
+    Raises HalError when the body does not answer; a camera that does not is the loop's affair.
+    """
+    try:
+        robot.camera.unseen(FIRST_PICTURE_S)
+    except HalError as error:
+        log.warning("no first picture: %s", error)
+    body = robot.body.latest()
     camera = equipment.camera
     width, height = camera.width // 10 * 2, camera.height // 4
     region = Region((camera.width - width) // 4 * 2, (camera.height - height) // 2, width, height)
