@@ -11,45 +11,34 @@ import math
 
 from numba import njit
 
-RECTANGLE, BOX, CYLINDER, SPHERE, CAPSULE = 0, 1, 2, 3, 4
+from sim_backend.raycast_types import BOX, CAPSULE, CYLINDER, RECTANGLE
+
 FAR = math.inf
 _NEAR = 1e-6
 
 
-@njit(cache=True, nogil=True)
-def hit_rectangle(ox, oy, oz, dx, dy, dz, hx, hy):  # type: ignore[no-untyped-def]
-    """Both sides are seen."""
-    if dz == 0.0:
-        return FAR
-    t = -oz / dz
-    if t > _NEAR and abs(ox + t * dx) <= hx and abs(oy + t * dy) <= hy:
-        return t
-    return FAR
-
-
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _slab(o, d, h):  # type: ignore[no-untyped-def]
-    if d == 0.0:
-        return (-FAR, FAR) if abs(o) <= h else (FAR, -FAR)
+    # a ray along the slab divides by zero: infinities of the right sign, inside as well as outside
     a, b = (-h - o) / d, (h - o) / d
     return (a, b) if a < b else (b, a)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def hit_box(ox, oy, oz, dx, dy, dz, hx, hy, hz):  # type: ignore[no-untyped-def]
     """Slabs; from inside, the far wall."""
     ax, bx = _slab(ox, dx, hx)
     ay, by = _slab(oy, dy, hy)
     az, bz = _slab(oz, dz, hz)
-    near, far = max(ax, ay, az), min(bx, by, bz)
-    if near > far:
-        return FAR
-    if near > _NEAR:
-        return near
-    return far if far > _NEAR else FAR
+    near = ax if ax > ay else ay
+    near = near if near > az else az
+    far = bx if bx < by else by
+    far = far if far < bz else bz
+    t = near if near > _NEAR else far
+    return t if (near <= far) & (t > _NEAR) else FAR
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def hit_sphere(ox, oy, oz, dx, dy, dz, r):  # type: ignore[no-untyped-def]
     """From outside."""
     a = dx * dx + dy * dy + dz * dz
@@ -62,7 +51,7 @@ def hit_sphere(ox, oy, oz, dx, dy, dz, r):  # type: ignore[no-untyped-def]
     return t if t > _NEAR else FAR
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def hit_tube(ox, oy, oz, dx, dy, dz, r, hz):  # type: ignore[no-untyped-def]
     """The mantle of a cylinder, seen from outside."""
     a = dx * dx + dy * dy
@@ -76,7 +65,7 @@ def hit_tube(ox, oy, oz, dx, dy, dz, r, hz):  # type: ignore[no-untyped-def]
     return t if t > _NEAR and abs(oz + t * dz) <= hz else FAR
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def hit_cylinder(ox, oy, oz, dx, dy, dz, r, hz):  # type: ignore[no-untyped-def]
     """Mantle and the cap on the ray's side."""
     best = hit_tube(ox, oy, oz, dx, dy, dz, r, hz)
@@ -88,7 +77,7 @@ def hit_cylinder(ox, oy, oz, dx, dy, dz, r, hz):  # type: ignore[no-untyped-def]
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def hit_capsule(ox, oy, oz, dx, dy, dz, r, hz):  # type: ignore[no-untyped-def]
     """Mantle and two balls."""
     best = hit_tube(ox, oy, oz, dx, dy, dz, r, hz)
@@ -97,21 +86,7 @@ def hit_capsule(ox, oy, oz, dx, dy, dz, r, hz):  # type: ignore[no-untyped-def]
     return min(best, top, low)
 
 
-@njit(cache=True, nogil=True)
-def hit(kind, ox, oy, oz, dx, dy, dz, a, b, c):  # type: ignore[no-untyped-def]
-    """Any primitive by its kind."""
-    if kind == RECTANGLE:
-        return hit_rectangle(ox, oy, oz, dx, dy, dz, a, b)
-    if kind == BOX:
-        return hit_box(ox, oy, oz, dx, dy, dz, a, b, c)
-    if kind == CYLINDER:
-        return hit_cylinder(ox, oy, oz, dx, dy, dz, a, b)
-    if kind == SPHERE:
-        return hit_sphere(ox, oy, oz, dx, dy, dz, a)
-    return hit_capsule(ox, oy, oz, dx, dy, dz, a, b)
-
-
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _box_side(x, y, z, a, b, c):  # type: ignore[no-untyped-def]
     px, py, pz = abs(x) / a, abs(y) / b, abs(z) / c
     if pz >= px and pz >= py:
@@ -121,7 +96,7 @@ def _box_side(x, y, z, a, b, c):  # type: ignore[no-untyped-def]
     return 0.0, math.copysign(1.0, y), 0.0, 0.5 + 0.5 * x / a, 0.5 - 0.5 * z / c
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _cylinder_side(x, y, z, r, hz, wants_uv):  # type: ignore[no-untyped-def]
     out = math.sqrt(x * x + y * y)
     if abs(z) >= hz * (1.0 - 1e-9) and out < r * (1.0 - 1e-9):
@@ -131,7 +106,7 @@ def _cylinder_side(x, y, z, r, hz, wants_uv):  # type: ignore[no-untyped-def]
     return x / out, y / out, 0.0, u, 0.5 - 0.5 * z / hz
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def surface(kind, x, y, z, a, b, c, wants_uv):  # type: ignore[no-untyped-def]
     """Outward normal and texture place (u to the right, v down, 0 to 1) at a point of the skin."""
     if kind == RECTANGLE:

@@ -14,6 +14,8 @@ TILE = 16
 SAMPLES = 16
 """Samples of a pixel at most: a 4 x 4 grid in space, 16 equal parts of the exposure in time."""
 
+RECTANGLE, BOX, CYLINDER, SPHERE, CAPSULE = range(5)
+
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 

@@ -7,14 +7,13 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_backend.raycast_shapes import BOX, CAPSULE, CYLINDER, RECTANGLE
-from sim_backend.raycast_types import KIND, NEAR, TILE, A, B, C
+from sim_backend.raycast_types import BOX, CAPSULE, CYLINDER, KIND, NEAR, RECTANGLE, TILE, A, B, C
 
 _CLIP_M = 0.02
 """Nothing nearer to the camera than this is seen."""
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _extents(kind, a, b, c):  # type: ignore[no-untyped-def]
     """Half lengths of the box around a primitive."""
     if kind == RECTANGLE:
@@ -28,7 +27,7 @@ def _extents(kind, a, b, c):  # type: ignore[no-untyped-def]
     return a, a, a
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _corners(T, row, out):  # type: ignore[no-untyped-def]
     """The eight corners of the box around a primitive, in the camera's frame."""
     a, b, c = _extents(int(row[KIND]), row[A], row[B], row[C])
@@ -40,14 +39,14 @@ def _corners(T, row, out):  # type: ignore[no-untyped-def]
             out[corner, i] = T[i, 0] * x + T[i, 1] * y + T[i, 2] * z + T[i, 3]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _widen(bounds, x, y, z, lens):  # type: ignore[no-untyped-def]
     u, v = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
     bounds[0], bounds[1] = min(bounds[0], u), max(bounds[1], u)
     bounds[2], bounds[3] = min(bounds[2], v), max(bounds[3], v)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _outline(corners, lens, bounds):  # type: ignore[no-untyped-def]
     """Widen (left, right, top, bottom) by the part of a box before the camera; least depth."""
     nearest = math.inf
@@ -67,7 +66,7 @@ def _outline(corners, lens, bounds):  # type: ignore[no-untyped-def]
     return nearest
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _ray(T, lens, out):  # type: ignore[no-untyped-def]
     """Ray of pixel (x, y) in the primitive's frame, from T_camera_primitive."""
     for i in range(3):
@@ -77,7 +76,7 @@ def _ray(T, lens, out):  # type: ignore[no-untyped-def]
         out[9 + i] = -(T[0, i] * T[0, 3] + T[1, i] * T[1, 3] + T[2, i] * T[2, 3])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def project(T_camera, table, lens, rays, bounds):  # type: ignore[no-untyped-def]
     """Rays, picture bounds (left, right, top, bottom in px) and least depth of every primitive.
 
@@ -96,7 +95,7 @@ def project(T_camera, table, lens, rays, bounds):  # type: ignore[no-untyped-def
             table[p, NEAR] = min(table[p, NEAR], _outline(corners, lens, bounds[p]))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _tile_range(low, high, size):  # type: ignore[no-untyped-def]
     """First and last-but-one tile touched by pixels from low to high, one pixel of margin."""
     first = max(0.0, np.floor((low - 1.0) / TILE))
@@ -106,7 +105,7 @@ def _tile_range(low, high, size):  # type: ignore[no-untyped-def]
     return int(first), int(last) + 1
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def list_tiles(bounds, order, width, height):  # type: ignore[no-untyped-def]
     """Primitives of every tile in the given order: their numbers, and where each tile's begin."""
     columns, rows = (width + TILE - 1) // TILE, (height + TILE - 1) // TILE

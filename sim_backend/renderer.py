@@ -52,7 +52,8 @@ def picture(
     arrays = scene.arrays
     render(
         view.rays, view.table, view.items, view.starts, arrays.texels, arrays.pyramids,
-        arrays.levels, 1.0 / shot.lens.fx, SAMPLES if thorough else FIRST, shadows, out,
+        arrays.levels, 1.0 / shot.lens.fx, SAMPLES if thorough else FIRST, shadows, shot.lens.width,
+        out.reshape(-1, 3),
     )  # fmt: skip
     return out
 
@@ -61,7 +62,11 @@ def object_hits(scene: Scene, shot: Shot) -> NDArray[np.uint8]:
     """How many of each pixel's 16 samples meet the object, (height, width) uint8."""
     out = np.empty((shot.lens.height, shot.lens.width), dtype=np.uint8)
     view = _view(scene, shot, True)
-    count_hits(view.rays, view.table, view.items, view.starts, scene.is_object, out)
+    count_hits(
+        view.rays, view.table, view.items, view.starts, scene.is_object, shot.lens.width,
+        out.reshape(-1),
+    )  # fmt: skip
+
     return out
 
 

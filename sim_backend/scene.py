@@ -11,13 +11,17 @@ from numpy.typing import NDArray
 from hal.nao.joints import Vector3
 from sim_backend.colour import linear_from_srgb
 from sim_backend.poses import Matrix
-from sim_backend.raycast_shapes import BOX, CAPSULE, CYLINDER, RECTANGLE, SPHERE
 from sim_backend.raycast_types import (
     BLUE,
+    BOX,
+    CAPSULE,
     CASTS,
     COLUMNS,
+    CYLINDER,
     KIND,
+    RECTANGLE,
     RED,
+    SPHERE,
     TEXELS_PER_M,
     TEXTURE,
     A,
