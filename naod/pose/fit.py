@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.linear import solve_symmetric
-from naod.pose.contour import CYLINDER, VERTICES, figures, is_arc, outline
+from naod.pose.contour import ARC, CYLINDER, VERTICES, figures, is_arc, outline
 from naod.pose.objects import ObjectShape
 
 ITERATIONS = 12
@@ -63,18 +63,36 @@ def _project(
 
 
 @njit(cache=True, nogil=True)
-def _nearest(image: NDArray[np.float64], pieces: int, u: float, v: float) -> tuple[int, float]:
+def _foot_on(image: NDArray[np.float64], k: int, u: float, v: float) -> tuple[float, float]:
+    """Squared distance of (u, v) from a piece, and how far along it the foot lies, 0 to 1."""
+    du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
+    length2 = du * du + dv * dv
+    if length2 < 1e-18:
+        return np.inf, 0.0
+    s = ((u - image[k, 0]) * du + (v - image[k, 1]) * dv) / length2
+    s = min(max(s, 0.0), 1.0)
+    ru, rv = u - image[k, 0] - s * du, v - image[k, 1] - s * dv
+    return ru * ru + rv * rv, s
+
+
+@njit(cache=True, nogil=True)
+def _nearest(
+    kind: int, image: NDArray[np.float64], pieces: int, u: float, v: float
+) -> tuple[int, float]:
     """The piece of the outline nearest to (u, v), and how far along it the foot lies."""
+    best, near = np.inf, 0
+    if kind == CYLINDER:
+        for k in range(pieces):
+            ru, rv = u - image[k, 0], v - image[k, 1]
+            if ru * ru + rv * rv < best:
+                best, near = ru * ru + rv * rv, k
+        # either side of the nearest corner, and the two long straight pieces
+        candidates = (near, near - 1 if near > 0 else pieces - 1, ARC, 2 * ARC + 1)
+    else:
+        candidates = (0, 1, 2, 3)
     best, piece, along = np.inf, 0, 0.0
-    for k in range(pieces):
-        du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
-        length2 = du * du + dv * dv
-        if length2 < 1e-18:
-            continue
-        s = ((u - image[k, 0]) * du + (v - image[k, 1]) * dv) / length2
-        s = min(max(s, 0.0), 1.0)
-        ru, rv = u - image[k, 0] - s * du, v - image[k, 1] - s * dv
-        distance2 = ru * ru + rv * rv
+    for k in candidates:
+        distance2, s = _foot_on(image, k, u, v)
         if distance2 < best:
             best, piece, along = distance2, k, s
     return piece, along
@@ -120,7 +138,7 @@ def compare(
     _project(R, t, vertices, pieces + 1, image)
     for i in range(points.shape[0]):
         u, v = points[i, 0], points[i, 1]
-        piece, s = _nearest(image, pieces, u, v)
+        piece, s = _nearest(kind, image, pieces, u, v)
         near, far = image[piece, 2], image[piece + 1, 2]
         _foot(kind, half_width, vertices, names[piece], piece,
               s * near / (s * near + (1.0 - s) * far), X)  # fmt: skip

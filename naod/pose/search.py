@@ -13,11 +13,12 @@ from naod.geometry.camera import PinholeCamera
 from naod.perception.blob import Blob, ordered_corners, oriented_box
 from naod.perception.edges import measure_edges
 from naod.pose.contour import outline_in_camera
-from naod.pose.fit import Fit, fit_outline
+from naod.pose.fit import ITERATIONS, Fit, fit_outline
 from naod.pose.objects import Cylinder, ObjectShape
 from naod.pose.starts import Box, facing, first_starts, next_starts
 
-START_POINTS = 80
+START_POINTS = 64
+START_ITERATIONS = 8
 FIT_POINTS = 1200
 PROFILES = 240
 POINTS_MIN = 12
@@ -83,7 +84,8 @@ def _readings(
     starts: list[NDArray[np.float64]],
 ) -> list[Reading]:
     few, many = outline.thinned(START_POINTS), outline.thinned(FIT_POINTS)
-    tried = (_fit(few, shape, camera, start, 0.5 * outline.grain_px) for start in starts)
+    rough = 0.5 * outline.grain_px
+    tried = (_fit(few, shape, camera, start, rough, START_ITERATIONS) for start in starts)
     found = [fit for fit in tried if fit is not None]
     found.sort(key=lambda fit: fit.cost(4.0 * outline.grain_px))
     finer = (
@@ -137,9 +139,10 @@ def _fit(
     camera: PinholeCamera,
     start: NDArray[np.float64],
     floor_px: float,
+    iterations: int = ITERATIONS,
 ) -> Fit | None:
     points = camera.normalised(outline.points_px)
-    fit = fit_outline(shape, start, points, focal_px(camera), floor_px, outline.trust)
+    fit = fit_outline(shape, start, points, focal_px(camera), floor_px, outline.trust, iterations)
     return upright(fit, shape) if _plausible(fit) else None
 
 
