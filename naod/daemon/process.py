@@ -37,6 +37,8 @@ log = logging.getLogger("naod")
 News = queue.SimpleQueue[Literal["warm", "ended", "stop"]]
 """What the main thread waits for: the kernels are compiled, a thread has ended, a signal came."""
 
+WAKE_S = 0.25
+
 
 def run_daemon(config: DaemonConfig, beside: Path) -> int:
     """Run until told to stop: 0 after a signal, 1 when a part of us ended by itself.
@@ -57,15 +59,28 @@ def run_daemon(config: DaemonConfig, beside: Path) -> int:
         notifier = Notifier.from_environment()
         stack.callback(notifier.close)
         verbs = _open(config, beside, stack, notifier, news)
-        told = news.get()
+        told = _next(news)
         if told == "warm":
             verbs.declare()
             notifier.ready()
             log.info("ready")
-            told = news.get()
+            told = _next(news)
         notifier.stopping()
         log.info("stopping")
     return 0 if told == "stop" else 1
+
+
+def _next(news: News) -> str:
+    """What has come; waits for it.
+
+    The kernel may hand a signal to any thread, and Python runs its handler in this one once it
+    wakes up: so it does, now and then.
+    """
+    while True:
+        try:
+            return news.get(timeout=WAKE_S)
+        except queue.Empty:
+            continue
 
 
 def _open(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hal.errors import HalError
+from hal.errors import CameraTimeoutError, HalError
 from hal.protocols import Robot
 from hal.types import BodyState, Frame
 from naod.loop.types import Observation, Request
@@ -35,6 +35,8 @@ class Senses:
         self.camera_error = None
         try:
             frame = self._robot.camera.latest(FRAME_AGE_MAX_S)
+        except CameraTimeoutError:
+            return None
         except HalError as error:
             self.camera_error = str(error)
             return None

@@ -137,8 +137,7 @@ def test_number_that_is_not_finite_is_refused_on_the_bus(daemon: Daemon) -> None
         key = watch.client.key("walk/command")
         payload = b'{"source":"x","seq":1,"kind":"velocity","x":NaN,"y":0,"yaw":0}'
         watch.client._session.put(key, payload)
-        state = watch.wait_for("walk/state", lambda m: m["refused"] is not None)
-        assert "not finite" in state["refused"]
+        state = watch.wait_for("walk/state", lambda m: "not finite" in (m["refused"] or ""))
         assert not state["moving"]
 
 
