@@ -24,12 +24,15 @@ from naod.pose.search import (
 )
 from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
 
-PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.1, per_point=3.0)
-MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0)
+PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.1, per_point=3.0, fits_px=1.0)
+MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0, fits_px=2.0)
 
 
 NEAR_PX = 4.0
 """How far from a good outline edges are looked for: the step and its plateaus."""
+
+SUPPORT_MIN = 0.7
+"""Share of the outline that must be there: about three edges of four."""
 
 OUTLIER = 3.0
 """Standard deviations beyond which a residual says no more than that it does not fit."""
@@ -54,8 +57,9 @@ def locate(
     del model
     coarse = first_readings(outline_of(blob), shape, camera)
     seen = _refined(coarse, yuyv, shape, camera)
-    if seen:
-        return _result(seen, PICTURE_NOISE, blob, shape, camera, estimator)
+    on_edges = _result(seen, PICTURE_NOISE, blob, shape, camera, estimator)
+    if on_edges is not None:
+        return on_edges
     return _result(coarse, _coarse_noise(blob), blob, shape, camera, estimator)
 
 
@@ -90,7 +94,7 @@ def locate_mask(
 
 def _coarse_noise(blob: Blob) -> EdgeNoise:
     grain = blob.grain_px
-    return EdgeNoise(0.3 * grain, 0.25 * grain, 0.25 * grain, 3.0)
+    return EdgeNoise(0.3 * grain, 0.25 * grain, 0.25 * grain, 3.0, 0.75 * grain)
 
 
 def _result(
@@ -101,6 +105,7 @@ def _result(
     camera: PinholeCamera,
     estimator: Estimator,
 ) -> ObjectPose | None:
+    found = [reading for reading in found if reading.support(noise.fits_px) >= SUPPORT_MIN]
     if not found:
         return None
     sigma_px = min(point_sigma(reading.fit, noise) for reading in found)

@@ -55,6 +55,11 @@ class Reading:
     fit: Fit
     outline: Outline
 
+    def support(self, within_px: float) -> float:
+        """Share of the outline, where it was looked for, with an edge no further away than this."""
+        near = np.count_nonzero(np.abs(self.fit.residuals) < within_px)
+        return float(near) / (len(self.fit.residuals) + self.outline.missed)
+
 
 def outline_of(blob: Blob) -> Outline:
     """A blob's boundary, where it is convex: the shapes looked for are, holes are not."""

@@ -20,12 +20,14 @@ class EdgeNoise:
 
     `floor_px`: least standard deviation of one point. `common_px`: the whole outline too wide or
     too narrow. `edge_px`: each edge by itself. `per_point`: neighbours that err together.
+    `fits_px`: a point further away belongs to something else.
     """
 
     floor_px: float
     common_px: float
     edge_px: float
     per_point: float
+    fits_px: float
 
 
 def point_sigma(fit: Fit, noise: EdgeNoise) -> float:
