@@ -47,7 +47,7 @@ class Film:
             return
         few = self._pictures[:: max(1, len(self._pictures) // 6)]
         palette = Image.fromarray(np.vstack([np.asarray(p) for p in few])).quantize(
-            200, method=Image.Quantize.MAXCOVERAGE
+            255, method=Image.Quantize.MEDIANCUT, kmeans=2
         )
         reduced = [p.quantize(palette=palette, dither=Image.Dither.NONE) for p in self._pictures]
         first, *others = reduced
