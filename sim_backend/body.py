@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from hal.errors import BackendError
 from hal.nao.cameras import MOUNTS
 from hal.nao.joints import JOINT_NAMES
 from hal.types import CameraName, NaoVersion
@@ -83,8 +84,13 @@ class Body:
     def link_frames(
         self, T_world_torso: Matrix, angles_rad: NDArray[np.float64]
     ) -> dict[str, Matrix]:
-        """Frames of all links in the world, (4, 4) each, for a torso pose and angles (26,)."""
+        """Frames of all links in the world, (4, 4) each, for a torso pose and angles (26,).
+
+        Raises BackendError once closed.
+        """
         with self._lock:
+            if self._client < 0:
+                raise BackendError("the simulation has been closed")
             self._pose(T_world_torso, angles_rad)
             states = pybullet.getLinkStates(
                 self._robot,

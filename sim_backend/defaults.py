@@ -22,12 +22,14 @@ DISTRACTOR_COLOURS = ((30, 90, 190), (40, 150, 70), (225, 130, 25), (120, 50, 14
 DISTRACTOR_ASIDE_M = 0.16
 LATENCY_MAX_S = 2.0
 ROOM_MAX_M = 20.0
+ANGLE_MAX_DEG = 3600.0
 
 _SIZES = {"cylinder": ("radius_m", "height_m"), "rectangle": ("width_m", "height_m")}
 
 
 def resolved(scenario: Scenario) -> Scenario:
     """The scenario with nothing left open. Raises ScenarioError that names the key."""
+    _angle("object.yaw_deg", scenario.object.yaw_deg)
     thing = _thing(scenario.object, "object", None, 0)
     others = tuple(
         _thing(other, f"distractor[{n}]", thing, n) for n, other in enumerate(scenario.distractor)
@@ -93,14 +95,14 @@ def _check(scenario: Scenario) -> None:
         assert thing.position is not None
         assert thing.height_m is not None
         _near(f"{key}.position", thing.position)
-        _near(f"{key}.yaw_deg", (thing.yaw_deg / 1e3,))
+        _angle(f"{key}.yaw_deg", thing.yaw_deg)
         if thing.position[2] - thing.height_m / 2.0 < -1e-6:
             raise ScenarioError(f"{key}.position: its lower edge is below the floor")
     assert scenario.goal.demonstrate_at is not None
     _near("robot.start", scenario.robot.start[:2])
-    _near("robot.start", (scenario.robot.start[2] / 1e3,))
+    _angle("robot.start", scenario.robot.start[2])
     _near("goal.demonstrate_at", scenario.goal.demonstrate_at[:2])
-    _near("goal.demonstrate_at", (scenario.goal.demonstrate_at[2] / 1e3,))
+    _angle("goal.demonstrate_at", scenario.goal.demonstrate_at[2])
     if scenario.walk.model != "kinematic":
         raise ScenarioError(f'walk.model: "{scenario.walk.model}" is not available yet')
     if not scenario.camera.latency_s <= LATENCY_MAX_S:
@@ -125,3 +127,8 @@ def _amounts(scenario: Scenario) -> dict[str, float]:
 def _near(key: str, values: tuple[float, ...]) -> None:
     if not all(math.isfinite(value) and abs(value) <= ROOM_MAX_M for value in values):
         raise ScenarioError(f"{key}: not a place within {ROOM_MAX_M:g} m")
+
+
+def _angle(key: str, degrees: float) -> None:
+    if not (math.isfinite(degrees) and abs(degrees) <= ANGLE_MAX_DEG):
+        raise ScenarioError(f"{key}: not an angle within {ANGLE_MAX_DEG:g} degrees")

@@ -56,19 +56,23 @@ class ViewArrays:
     starts: I64
 
 
+# multiplication by 2 and by 3 in the field of four elements, whose addition is exclusive or
+_TWICE, _THRICE = (0, 2, 3, 1), (0, 3, 1, 2)
+
+
 def _pattern() -> tuple[F64, I64]:
     """Places in the pixel (16, 2) and parts of the exposure (16,) of the samples.
 
-    Each four in turn hit every row, every column and every quarter of the exposure once; the first
-    four hold the exposure's first and last part, so that an edge passing through is noticed.
+    A pair of orthogonal Latin squares: every row, and every column, of the pixel is looked at once
+    in every quarter of the exposure, so that an edge along the motion is covered as well as one
+    across it. The first four hit every row, column and quarter, and the first and the last part.
     """
     places, parts = np.empty((SAMPLES, 2)), np.empty(SAMPLES, dtype=np.int64)
-    columns = (1, 3, 0, 2)
     for sample in range(SAMPLES):
         turn, row = divmod(sample, 4)
-        column = (columns[row] + turn) % 4
+        column, fine = _TWICE[row] ^ turn, _THRICE[row]
         places[sample] = ((column - 1.5) / 4.0, (row - 1.5) / 4.0)
-        parts[sample] = 4 * row + (row + turn) % 4
+        parts[sample] = 4 * (fine ^ turn) + fine
     return places, parts
 
 

@@ -54,7 +54,8 @@ class Sensors:
         warm = 1.0 - math.exp(-self._time_s / WARM_TAU_S)
         return BodyState(
             stamp_ns=stamp_ns,
-            angles_rad=np.rint(angles / ENCODER_STEP_RAD) * ENCODER_STEP_RAD,
+            # adding zero keeps a joint at rest from reading -0.0
+            angles_rad=np.rint(angles / ENCODER_STEP_RAD) * ENCODER_STEP_RAD + 0.0,
             gyro_rad_s=gyro + GYRO_STD_RAD_S * rng.standard_normal(3),
             accel_m_s2=accel + ACCEL_STD_M_S2 * rng.standard_normal(3),
             torso_roll_pitch_rad=tilt + TILT_STD_RAD * rng.standard_normal(2),

@@ -59,6 +59,8 @@ def clipped_velocity(velocity: PlanarMotion) -> PlanarMotion:
     """The nearest velocity in the direction asked for: box first, then ellipse, as NAOqi clips."""
     top = VELOCITY_MAX
     shares = (velocity.x / top.x, velocity.y / top.y, velocity.yaw / top.yaw)
+    if sum(share * share for share in shares) <= 1.0:
+        return velocity
     a, b, c = _into_ellipse(tuple(min(max(share, -1.0), 1.0) for share in shares))
     return PlanarMotion(a * top.x, b * top.y, c * top.yaw)
 
