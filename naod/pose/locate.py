@@ -12,6 +12,7 @@ from naod.perception.blob import Blob, blob_of_mask
 from naod.perception.colour_model import ColourModel
 from naod.pose.contour import corners_px
 from naod.pose.objects import ObjectShape
+from naod.pose.outline import outline_of
 from naod.pose.paper import paper_pose
 from naod.pose.result import Estimator, ObjectPose
 from naod.pose.search import (
@@ -19,7 +20,6 @@ from naod.pose.search import (
     first_readings,
     next_readings,
     on_picture,
-    outline_of,
     seen_on_picture,
 )
 from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
