@@ -10,10 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
-from naod.perception.blob import Blob, ordered_corners, oriented_box
+from naod.perception.blob import Blob
 from naod.pose.contour import outline_in_camera
 from naod.pose.objects import Cylinder, ObjectShape
-from naod.pose.starts import Box
 
 PROFILES = 240
 PLACES_MIN = 12
@@ -98,39 +97,6 @@ def _lonely_share(places: NDArray[np.float64], points: NDArray[np.float64], reac
                 break
         lonely += not found
     return lonely / places.shape[0]
-
-
-def figure(
-    outline: Outline, shape: ObjectShape, camera: PinholeCamera
-) -> tuple[Box, NDArray[np.float64] | None]:
-    """Oriented box and, for a whole rectangle, quadrilateral, both on the plane z = 1."""
-    points = outline.points_px
-    corners = oriented_box(points)
-    box = Box(camera.normalised(corners), _cut(outline, corners, camera))
-    if isinstance(shape, Cylinder) or outline.clipped:
-        return box, None
-    four = np.asarray(cv2.approxPolyN(points.astype(np.float32), 4)).reshape(-1, 2)
-    if len(four) != 4:
-        return box, None
-    return box, camera.normalised(ordered_corners(four.astype(np.float64)))
-
-
-def _cut(
-    outline: Outline, corners: NDArray[np.float64], camera: PinholeCamera
-) -> NDArray[np.bool_]:
-    """Which edges of a box (4, 2) in pixels are the picture's border."""
-    middles = (corners + np.roll(corners, -1, axis=0)) / 2.0
-    slack = 2.0 * outline.grain_px + 2.0
-    near = {
-        "left": middles[:, 0] < slack,
-        "right": middles[:, 0] > camera.width - 1 - slack,
-        "top": middles[:, 1] < slack,
-        "bottom": middles[:, 1] > camera.height - 1 - slack,
-    }
-    cut = np.zeros(4, dtype=np.bool_)
-    for side in outline.clipped:
-        cut |= near[side]
-    return cut
 
 
 def _near_hull(points: NDArray[np.float64], within: float) -> NDArray[np.float64]:

@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
 from naod.perception.blob import ordered_corners, oriented_box
+from naod.pose.box import line_through
 from naod.pose.contour import BOTTOM, LEFT, RIGHT, TOP
+from naod.pose.frames import pose
 from naod.pose.objects import Cylinder, ObjectShape, Rectangle
 from naod.pose.result import ObjectPose
 from naod.pose.search import Reading
-from naod.pose.starts import pose
 
 Point = NDArray[np.float64]
 
@@ -54,7 +55,7 @@ def box_corners(
         return None
     if isinstance(shape, Cylinder):
         return oriented_box(points)
-    lines = [_line(points[edges == edge]) for edge in (TOP, RIGHT, BOTTOM, LEFT)]
+    lines = [line_through(points[edges == edge]) for edge in (TOP, RIGHT, BOTTOM, LEFT)]
     corners = []
     for k in range(4):
         a, b = lines[k - 1], lines[k]
@@ -106,12 +107,3 @@ def _axes(right: Point, up: Point) -> NDArray[np.float64]:
     a = np.cross(H, V)
     left, _, out = np.linalg.svd(np.column_stack([H, V, a / np.linalg.norm(a)]))
     return left @ np.diag([1.0, 1.0, np.linalg.det(left @ out)]) @ out
-
-
-def _line(points: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """(a, b, c) with a x + b y + c = 0 through points, least squares across it."""
-    if len(points) < 2:
-        return None
-    mean = points.mean(axis=0)
-    normal = np.linalg.svd(points - mean, full_matrices=False)[2][-1]
-    return np.append(normal, -normal @ mean)

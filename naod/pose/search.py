@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from naod.geometry.camera import PinholeCamera
 from naod.perception.edges import measure_edges
 from naod.pose.fit import ITERATIONS, Fit, fit_outline
+from naod.pose.frames import facing
 from naod.pose.objects import Cylinder, ObjectShape
-from naod.pose.outline import Outline, figure, gap_share, profile_places
-from naod.pose.starts import facing, first_starts, next_starts
+from naod.pose.outline import Outline, gap_share, profile_places
+from naod.pose.starts import first_starts, next_starts
 
 START_POINTS = 64
 START_ITERATIONS = 8
@@ -42,8 +43,7 @@ def first_readings(outline: Outline, shape: ObjectShape, camera: PinholeCamera) 
     """The few poses that fit a blob's outline, the best first; none if it has too few points."""
     if len(outline.points_px) < POINTS_MIN:
         return []
-    starts = first_starts(shape, *figure(outline, shape, camera))
-    found = _readings(outline, shape, camera, starts)
+    found = _readings(outline, shape, camera, first_starts(outline, shape, camera))
     return [_with_gaps(reading, shape, camera) for reading in found]
 
 
