@@ -75,5 +75,6 @@ def _listening(endpoints: tuple[str, ...], text: str) -> str:
     guilty = next((e for e in endpoints if e in text), ", ".join(endpoints))
     if "Address already in use" in text:
         return f"cannot listen on {guilty}: the port is in use (is another daemon running?)"
-    reason = re.sub(r"\s+at /.*?:\d+\.?", "", " ".join(text.split())).strip(" [].")
-    return f"cannot listen on {guilty}: {reason}"
+    system = re.search(r"([A-Z][\w ]+) \(os error \d+\)", text)
+    plain = re.sub(r"\s+at /.*?:\d+\.?", "", " ".join(text.split())).strip(" [].")
+    return f"cannot listen on {guilty}: {system.group(1) if system else plain}"

@@ -184,6 +184,24 @@ def test_walk_server_that_fell_silent_is_a_fault_and_feeds_no_watchdog(parts: Pa
     assert not fed.wait(0.5)
 
 
+def test_robot_stops_by_itself_when_the_walk_server_hangs(
+    parts: Parts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """S2: the deadline of the last motion is the robot's own."""
+    walk, clock = parts.robot.walk, parts.robot.clock
+    drive = WalkCommand(source="op", seq=1, kind="velocity", x=0.08, ttl_ms=1000)
+    assert parts.server.command(drive) is None
+    assert walk.status().velocity.x > 0.0
+    hung = threading.Event()
+    monkeypatch.setattr(parts.server, "_tick", hung.wait)
+    begin_ns = now_ns = clock.now_ns()
+    while walk.status().velocity.x > 0.0 and now_ns - begin_ns < 2e9:
+        clock.sleep_until(now_ns + 10_000_000)
+        now_ns = clock.now_ns()
+    assert now_ns - begin_ns < 0.6e9
+    hung.set()
+
+
 def test_what_cannot_be_kept_is_told_to_whoever_asked(parts: Parts) -> None:
     answers: queue.SimpleQueue[tuple[str, str]] = queue.SimpleQueue()
     parts.desk.ask(Teach("cup"), Caller(answers), 0)

@@ -70,13 +70,17 @@ def test_label_teach_start_watch_stop(daemon: Daemon, region: str) -> None:
 
 def test_stop_ends_an_approach(daemon: Daemon, region: str) -> None:
     assert daemon.ctl("walk", "-0.1", "0", "0", "--for", "3").returncode == 0
-    assert daemon.ctl("start", "cup").returncode == 0
     with Watch(daemon.endpoint, "walk/state", "state") as watch:
+        words = ("ctl", "--connect", daemon.endpoint, "start", "cup", "--wait")
+        waiting = subprocess.Popen([*NAOD, *words], stdout=subprocess.PIPE, text=True)
         watch.wait_for("walk/state", lambda m: m["moving"] and m["last_source"] == "tracker")
         assert daemon.ctl("stop").returncode == 0
         watch.wait_for("walk/state", lambda m: not m["moving"])
         assert watch.wait_for("state")["mode"] == "track"
         assert watch.wait_for("state")["goal"] is None
+    told, _ = waiting.communicate(timeout=10.0)
+    assert waiting.returncode == 1
+    assert "stopped on request" in told
 
 
 def test_watch_prints_lines_for_people_and_for_programs(daemon: Daemon) -> None:
