@@ -20,7 +20,8 @@ BACKENDS: dict[str, str] = {
 class OpenOptions:
     """What every backend is told; `section` holds what only that backend understands.
 
-    The "sim" backend takes in `section`: `scenario` (a Scenario or None), `seed` (int) and
+    The "sim" backend takes in `section`: `scenario` (a Scenario or None; its robot's version wins
+    over `version`), `scenario_folder` (a Path, where the scenario's pictures are), `seed` (int) and
     `real_time` (bool).
     """
 

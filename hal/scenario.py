@@ -45,7 +45,7 @@ class ThingSection(_Section, frozen=True):
 
 
 class GoalSection(_Section, frozen=True):
-    """`demonstrate_at`: x in m, y in m, yaw in degrees; None for 0.45 m before the object."""
+    """`demonstrate_at`: x in m, y in m, yaw in degrees; None for a place before the object."""
 
     demonstrate_at: tuple[float, float, float] | None = None
 

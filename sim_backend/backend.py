@@ -16,7 +16,7 @@ from hal.types import BodyState, HeadAngles, PlanarMotion, RobotInfo
 from sim_backend.body import Body
 from sim_backend.camera import SimCamera
 from sim_backend.clocks import LockStepClock, RealClock, WorldClock
-from sim_backend.develop import rgb_levels
+from sim_backend.develop import developed, rgb_levels
 from sim_backend.exposure import brightness_at
 from sim_backend.eye import Eye
 from sim_backend.furniture import object_frame
@@ -24,7 +24,7 @@ from sim_backend.options import SimOptions, checked
 from sim_backend.poses import Matrix, transform, wrapped
 from sim_backend.renderer import Shot, picture
 from sim_backend.room import furnished
-from sim_backend.scene import build_scene
+from sim_backend.scene import Scene, build_scene
 from sim_backend.viewpoint import room_camera, room_lens
 from sim_backend.walk import SimWalk
 from sim_backend.world import World
@@ -66,6 +66,8 @@ class SimRobot:
         self._scene = build_scene(furnished(told.scenario, told.folder, told.seed), True)
         self._info = RobotInfo(options.name, told.version, "sim", True)
         self._simulated = Body(told.version)
+        if told.real_time:
+            _warm_up(self._scene)
         real_ns = time.monotonic_ns if told.real_time else None
         self._world = World(told.scenario, told.version, told.seed, real_ns)
         size = (options.width, options.height)
@@ -176,6 +178,13 @@ class SimRobot:
         self._world.walk.stop()
         self._clock.close()
         self._simulated.close()
+
+
+def _warm_up(scene: Scene) -> None:
+    """Let numba compile before the clock runs: with an empty cache that takes many seconds."""
+    shapes = np.broadcast_to(np.eye(4), (1, int(scene.is_robot.sum()), 4, 4))
+    shot = Shot(room_lens(32, 24), np.eye(4)[None], shapes)
+    developed(picture(scene, shot, own_view=True), 0.0, np.random.default_rng(0))
 
 
 def open_robot(options: OpenOptions) -> SimulatedRobot:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hal.scenario import Scenario
 from sim_backend.furniture import (
@@ -29,6 +30,8 @@ LEAST_COLOUR_GAP = 48.0
 """Distance in RGB levels every piece keeps from the object's colour."""
 CLEAR_M = 0.75
 """Half width of what is kept free before the object."""
+WAY_M = 0.45
+"""Free on both sides of the straight ways between start, shown pose and object."""
 
 
 def clutter(scenario: Scenario, seed: int) -> list[Primitive]:
@@ -110,7 +113,30 @@ def _pieces(scenario: Scenario, rng: np.random.Generator) -> list[Primitive]:
         T = T_floor @ transform(rot_z(turn), (x, y, high))
         if n < BLOCKS:
             size = (rng.uniform(0.05, 0.14), rng.uniform(0.05, 0.14), high)
-            parts.append(Primitive("box", T, size, colour))
+            piece = Primitive("box", T, size, colour)
         else:
-            parts.append(Primitive("cylinder", T, (rng.uniform(0.04, 0.11), high, 0.0), colour))
+            piece = Primitive("cylinder", T, (rng.uniform(0.04, 0.11), high, 0.0), colour)
+        if not _stands_in_the_way(scenario, T[:2, 3]):
+            parts.append(piece)
     return parts
+
+
+def _stands_in_the_way(scenario: Scenario, place: NDArray[np.float64]) -> bool:
+    assert scenario.object.position is not None
+    assert scenario.goal.demonstrate_at is not None
+    ends = [scenario.robot.start[:2], scenario.goal.demonstrate_at[:2]]
+    ends.append(scenario.object.position[:2])
+    return any(
+        _distance_to_way(place, np.array(a), np.array(b)) < WAY_M
+        for a, b in zip(ends, ends[1:] + ends[:1], strict=True)
+    )
+
+
+def _distance_to_way(
+    place: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
+) -> float:
+    """Distance of a place on the floor from the straight way between two others."""
+    way = b - a
+    length = float(way @ way)
+    share = min(max(float((place - a) @ way) / length, 0.0), 1.0) if length > 0.0 else 0.0
+    return float(np.linalg.norm(place - a - share * way))

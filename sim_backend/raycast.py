@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from sim_backend.raycast_paint import face, face_rectangle, is_seen, paint, paint_plain, paper
-from sim_backend.raycast_trace import darken, trace
+from sim_backend.raycast_trace import darken, shading, trace
 from sim_backend.raycast_types import KIND, PARTS, PLACES, RECTANGLE, SAMPLES, TEXTURE, TILE, A, B
 
 FIRST = 4
@@ -38,22 +38,23 @@ def _spread_out(i0, i1, j0, j1, width, pixels, sheet):  # type: ignore[no-untype
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _colour(  # type: ignore[no-untyped-def]
-    p, rays, table, texels, pyramids, levels, texel_size, place, shadows, sheet, found
+    p, rays, table, texels, pyramids, levels, texel_size, place, casters, sheet, found
 ):
     """Light that comes back where a ray meets primitive p."""
     xs, ys, depth, facing = sheet[_X], sheet[_Y], sheet[_DEPTH], sheet[_FACING]
     us, vs, reds, greens, blues = sheet[_U], sheet[_V], sheet[_R], sheet[_G], sheet[_B]
     m, row = rays[p], table[p]
     texture, is_rectangle = int(row[TEXTURE]), row[KIND] == RECTANGLE
-    if texture < 0 and is_rectangle and not shadows:
+    dark = casters.shape[0] > 0
+    if texture < 0 and is_rectangle and not dark:
         paint_plain(p, m, row, xs, ys, found, reds, greens, blues)
         return
     if is_rectangle:
         face_rectangle(p, m, row, xs, ys, depth, found, facing, us, vs)
     else:
         face(p, m, row, xs, ys, depth, found, facing, us, vs)
-    if shadows:
-        darken(p, rays, table, xs, ys, depth, found, facing)
+    if dark:
+        darken(p, casters, rays, table, xs, ys, depth, found, facing)
     if texture < 0 or not is_rectangle:
         paint(p, row, found, facing, reds, greens, blues)
     if texture >= 0:
@@ -65,7 +66,7 @@ def _colour(  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _sample(  # type: ignore[no-untyped-def]
-    rays, table, items, texels, pyramids, levels, texel_size, place, shadows, sheet, found
+    rays, table, items, texels, pyramids, levels, texel_size, place, casters, sheet, found
 ):
     """Colours of one sample of every pixel at the sheet's places."""
     trace(rays, table, items, sheet[_X], sheet[_Y], sheet[_DEPTH], found)
@@ -73,7 +74,7 @@ def _sample(  # type: ignore[no-untyped-def]
     for p in items:
         if is_seen(p, found):
             _colour(
-                p, rays, table, texels, pyramids, levels, texel_size, place, shadows, sheet, found
+                p, rays, table, texels, pyramids, levels, texel_size, place, casters, sheet, found
             )
 
 
@@ -152,13 +153,18 @@ def render(  # type: ignore[no-untyped-def]
     height, columns = out.shape[0] // width, (width + TILE - 1) // TILE
     sheet, pixels = np.empty((_ROWS, TILE * TILE)), np.empty(TILE * TILE, dtype=np.int64)
     found, owner = np.empty(TILE * TILE, dtype=np.int64), np.empty(TILE * TILE, dtype=np.int64)
-    moments = rays.shape[0]
+    moments, none, depth = rays.shape[0], items[:0], sheet[_DEPTH]
     for n in range(starts.shape[0] - 1):
         i0, j0 = n // columns * TILE, n % columns * TILE
         i1, j1 = min(i0 + TILE, height), min(j0 + TILE, width)
         count = _spread_out(i0, i1, j0, j1, width, pixels, sheet)
         tile = items[starts[n] : starts[n + 1]]
-        flat = not shadows and _is_flat(rays, table, tile, i0, i1, j0, j1)
+        casters = none
+        if shadows:
+            casters = shading(
+                rays[0], table, sheet[_COLUMN], sheet[_ROW], tile, depth, found, count
+            )
+        flat = casters.shape[0] == 0 and _is_flat(rays, table, tile, i0, i1, j0, j1)
         enough = 1 if flat else least
         for sample in range(SAMPLES):
             if count == 0:
@@ -167,7 +173,7 @@ def render(  # type: ignore[no-untyped-def]
             _aim(count, PLACES[sample], sheet)
             _sample(
                 rays[k], table, tile, texels, pyramids, levels, texel_size, PLACES[sample],
-                shadows, sheet[:, :count], found[:count],
+                casters, sheet[:, :count], found[:count],
             )  # fmt: skip
             _add(sample == 0, sheet, found[:count], owner)
             if sample + 1 in (enough, SAMPLES):

@@ -6,6 +6,7 @@ which costs more than meeting a rectangle does.
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from sim_backend.raycast_shapes import FAR, hit_box, hit_capsule, hit_cylinder, hit_sphere
@@ -28,6 +29,7 @@ from sim_backend.raycast_types import (
 
 _NEAR_M = 1e-6
 _LIFT_M = 1e-4
+_MARGIN_M = 0.03
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -112,30 +114,44 @@ def _meet_round(kind, m, row, p, xs, ys, depth, found):  # type: ignore[no-untyp
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def darken(p, rays, table, xs, ys, depth, found, facing):  # type: ignore[no-untyped-def]
-    """Set `facing` (n,) to 0 where something else keeps the light from primitive p."""
+def shading(rays, table, columns, rows, items, depth, found, count):  # type: ignore[no-untyped-def]
+    """Numbers of the primitives that may keep the light from what a tile's `count` rays meet."""
+    trace(rays, table, items, columns[:count], rows[:count], depth[:count], found[:count])
+    casters, n = np.empty(table.shape[0], dtype=np.int64), 0
     for q in range(table.shape[0]):
-        if table[q, CASTS] > 0.0 and q != p:
+        if table[q, CASTS] > 0.0:
+            reach = table[q, A] + table[q, B] + table[q, C] + _MARGIN_M
+            if _may_cast(-1, reach, rays[q], table[q], columns, rows, depth, found[:count]):
+                casters[n] = q
+                n += 1
+    return casters[:n]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def darken(p, casters, rays, table, xs, ys, depth, found, facing):  # type: ignore[no-untyped-def]
+    """Set `facing` (n,) to 0 where one of the casters keeps the light from primitive p."""
+    for q in casters:
+        if q != p:
             m, row = rays[q], table[q]
-            if _may_cast(p, m, row, xs, ys, depth, found):
+            if _may_cast(p, row[A] + row[B] + row[C], m, row, xs, ys, depth, found):
                 _cast(p, m, row, xs, ys, depth, found, facing)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _may_cast(p, m, row, xs, ys, depth, found):  # type: ignore[no-untyped-def]
-    """Whether the light to any point of p that is seen passes near a primitive."""
+def _may_cast(p, reach, m, row, xs, ys, depth, found):  # type: ignore[no-untyped-def]
+    """Whether the light to any point of p that is seen, or of anything if p is -1, passes near."""
     m0, m1, m2, m3, m4, m5 = m[0], m[1], m[2], m[3], m[4], m[5]
     m6, m7, m8, m9, m10, m11 = m[6], m[7], m[8], m[9], m[10], m[11]
     lx, ly, lz = row[LIGHT_X], row[LIGHT_Y], row[LIGHT_Z]
-    reach = (row[A] + row[B] + row[C]) ** 2
-    near = 0
-    for i in range(xs.shape[0]):
+    near, any_will_do = 0, p < 0
+    for i in range(found.shape[0]):
         x, y, t = xs[i], ys[i], depth[i]
         ox = m9 + t * (m0 * x + m1 * y + m2)
         oy = m10 + t * (m3 * x + m4 * y + m5)
         oz = m11 + t * (m6 * x + m7 * y + m8)
         along = ox * lx + oy * ly + oz * lz
-        near += (ox * ox + oy * oy + oz * oz - along * along <= reach) & (found[i] == p)
+        aside = ox * ox + oy * oy + oz * oz - along * along
+        near += (aside <= reach * reach) & (any_will_do | (found[i] == p))
     return near > 0
 
 

@@ -22,6 +22,7 @@ from hal.scenario import (
     ThingSection,
     WalkSection,
 )
+from sim_backend.clutter import clutter
 from sim_backend.defaults import resolved
 from sim_backend.furniture import has_table, table_frame
 from sim_backend.room import furnished
@@ -124,6 +125,22 @@ def test_clutter_depends_on_the_seed_and_keeps_off_the_object() -> None:
     for part in rooms[0]:
         if part.role != "object":
             assert np.linalg.norm(np.array(part.colour) - own) > 40.0
+
+
+@pytest.mark.parametrize("kind", ["cylinder", "rectangle"])
+def test_clutter_leaves_the_way_free(kind: str) -> None:
+    scenario = resolved(Scenario(object=ThingSection(kind=kind)))
+    start = np.array(scenario.robot.start[:2])
+    way = np.array(scenario.object.position[:2]) - start
+    for seed in range(20):
+        pieces = [part for part in clutter(scenario, seed) if part.kind != "rectangle"]
+        assert len(pieces) > 8
+        for part in pieces:
+            if part.size[1] > 1.0:
+                continue  # the screen behind the table
+            off = part.T_world[:2, 3] - start
+            along = np.clip(off @ way / (way @ way), 0.0, 1.0)
+            assert np.linalg.norm(off - along * way) > 0.45
 
 
 def test_the_scenarios_robot_wins_over_the_options(opened: Opened) -> None:
