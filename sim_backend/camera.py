@@ -99,8 +99,11 @@ class SimCamera:
         limit_ns = now_ns + round(max(timeout_s, 0.0) * 1e9)
         while self._middle_ns(number) + self._late_ns <= limit_ns:
             if not self._is_lost(number):
+                # in real time it is rendered while it is, as it were, on its way
+                self._clock.sleep_until(self._middle_ns(number) + self._half_ns)
+                frame = self._hand_out(number)
                 self._clock.sleep_until(self._middle_ns(number) + self._late_ns)
-                return self._hand_out(number)
+                return frame
             number += 1
         self._clock.sleep_until(limit_ns)
         raise CameraTimeoutError(f"no picture within {timeout_s:g} s")
@@ -111,6 +114,8 @@ class SimCamera:
             if self._last is not None and self._last.sequence == number:
                 return self._last
         middle_ns = self._middle_ns(number)
+        # in real time the world's own thread may be a little behind
+        self._world.run_to(self._clock.now_ns())
         yuyv = self._eye.take(middle_ns, number)
         if yuyv is None:
             raise CameraTimeoutError("the picture is gone: the robot was carried meanwhile")
