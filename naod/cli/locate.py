@@ -67,13 +67,12 @@ def _locator(args: argparse.Namespace, shape: ObjectShape, camera: PinholeCamera
     estimator: Estimator = args.estimator
     if args.mask is not None:
         return lambda _, mask: None if mask is None else locate_mask(mask, shape, camera, estimator)
-    model = load_model(args.model)
-    segmenters = Segmenters(model)
+    segmenters = Segmenters(load_model(args.model))
 
     def with_model(picture: Picture, _: NDArray[np.uint8] | None) -> ObjectPose | None:
         segmenter = segmenters.of(picture)
         blob = find_blob(segmenter.segment(picture.yuyv), segmenter.settings.pixels_min)
-        return None if blob is None else locate(picture.yuyv, blob, model, shape, camera, estimator)
+        return None if blob is None else locate(picture.yuyv, blob, shape, camera, estimator)
 
     return with_model
 

@@ -85,12 +85,12 @@ class Equipment:
         frames = self.body.frames(body.angles_rad)
         ray = np.append(self.camera.normalised(np.array([blob.centre_px]))[0], 1.0)
         estimator = self.config.approach.estimator
-        pose = self._locate(frame, blob, model, estimator)
+        pose = self._locate(frame, blob, estimator)
         look, paper = None, None
         if not is_lifted(body.foot_load_kg):
             T = T_base_camera(frames, body.foot_load_kg)
             look = _look(frame.stamp_ns, pose, T) if pose else None
-            printed = self._locate(frame, blob, model, "paper") if self.compare_paper else None
+            printed = self._locate(frame, blob, "paper") if self.compare_paper else None
             paper = ego_pose(T @ printed.T_camera_object) if printed else None
         return Sighting(
             stamp_ns=frame.stamp_ns,
@@ -104,10 +104,8 @@ class Equipment:
             paper=paper,
         )
 
-    def _locate(
-        self, frame: Frame, blob: Blob, model: ColourModel, estimator: Estimator
-    ) -> ObjectPose | None:
-        return locate(frame.yuyv, blob, model, self.shape, self.camera, estimator)
+    def _locate(self, frame: Frame, blob: Blob, estimator: Estimator) -> ObjectPose | None:
+        return locate(frame.yuyv, blob, self.shape, self.camera, estimator)
 
     def _segmenter_for(self, model: ColourModel) -> Segmenter:
         if self._segmenter is None or self._segmenter[0] is not model:

@@ -40,11 +40,13 @@ class Edges:
     """Edges along n normals.
 
     `offset_px` (n,) from the given place, positive outwards; `sigma_px` (n,) by noise and slope;
+    `width_px` (n,) over which the step rises, were it as steep all the way;
     `within` (n,) whether the picture reaches so far; `seen` (n,) whether there is an edge.
     """
 
     offset_px: NDArray[np.float64]
     sigma_px: NDArray[np.float64]
+    width_px: NDArray[np.float64]
     within: NDArray[np.bool_]
     seen: NDArray[np.bool_]
 
@@ -190,12 +192,12 @@ def _edge(
     nx: float,
     scores: NDArray[np.float64],
     scratch: NDArray[np.float64],
-) -> tuple[float, float]:
-    """Place of the edge in a profile, in samples, and its sigma in pixels; infinite if unseen."""
+) -> tuple[float, float, float]:
+    """Place of the edge in a profile, in samples; its sigma, infinite if unseen; its width."""
     inner, outer, direction = scratch[0], scratch[1], scratch[2]
     contrast = _separation(colours, count, inner, outer, direction)
     if contrast < CONTRAST_MIN:
-        return 0.0, np.inf
+        return 0.0, np.inf, 0.0
     for k in range(count):
         scores[k] = 0.0
         for c in range(3):
@@ -205,7 +207,7 @@ def _edge(
         k = _split(scores, count, level)
         slope = _slope(scores, count, k)
         if slope < SLOPE_MIN or not scores[k] <= level <= scores[k + 1]:
-            return 0.0, np.inf
+            return 0.0, np.inf, 0.0
         level = _level_at_edge(inner, outer, direction, nx, slope, scratch[3:])
     while k > 0 and scores[k] > level:
         k -= 1
@@ -213,8 +215,8 @@ def _edge(
         k += 1
     step = scores[k + 1] - scores[k]
     if not step > 0.0:
-        return 0.0, np.inf
-    return k + (level - scores[k]) / step, 1.0 / (contrast * slope)
+        return 0.0, np.inf, 0.0
+    return k + (level - scores[k]) / step, 1.0 / (contrast * slope), 1.0 / slope
 
 
 @njit(cache=True, nogil=True)
@@ -226,6 +228,7 @@ def _measure(
     depth: float,
     offset: NDArray[np.float64],
     sigma: NDArray[np.float64],
+    rise: NDArray[np.float64],
     within: NDArray[np.bool_],
     seen: NDArray[np.bool_],
 ) -> None:
@@ -233,13 +236,13 @@ def _measure(
     colours, scores = np.empty((SAMPLES_MAX, 3)), np.empty(SAMPLES_MAX)
     scratch = np.empty((6, 3))
     for i in range(places.shape[0]):
-        seen[i], offset[i], sigma[i] = False, 0.0, np.inf
+        seen[i], offset[i], sigma[i], rise[i] = False, 0.0, np.inf, 0.0
         x, y = places[i, 0] + reach * normals[i, 0], places[i, 1] + reach * normals[i, 1]
         within[i] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
         if not within[i]:
             continue
         count = _profile(yuyv, places[i], normals[i], reach, depth, colours)
-        place, sigma[i] = _edge(colours, count, normals[i, 0], scores, scratch)
+        place, sigma[i], rise[i] = _edge(colours, count, normals[i, 0], scores, scratch)
         if sigma[i] < np.inf:
             offset[i] = (place - count // 2) * STEP_PX
             seen[i] = True
@@ -259,7 +262,7 @@ def measure_edges(
     """
     n = len(places_px)
     flags = np.empty((2, n), dtype=np.bool_)
-    out = Edges(np.empty(n), np.empty(n), flags[0], flags[1])
+    out = Edges(np.empty(n), np.empty(n), np.empty(n), flags[0], flags[1])
     reach = min(reach_px, (SAMPLES_MAX // 2) * STEP_PX)
     _measure(
         np.ascontiguousarray(yuyv),
@@ -269,6 +272,7 @@ def measure_edges(
         depth_px,
         out.offset_px,
         out.sigma_px,
+        out.width_px,
         out.within,
         out.seen,
     )

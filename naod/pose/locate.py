@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
 from naod.perception.blob import Blob, blob_of_mask
-from naod.perception.colour_model import ColourModel
 from naod.pose.contour import corners_px
 from naod.pose.objects import ObjectShape
 from naod.pose.outline import outline_of
@@ -31,6 +30,12 @@ MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0, 
 NEAR_PX = 4.0
 """How far from a good outline edges are looked for: the step and its plateaus."""
 
+NEAR_RISES = 1.2
+"""The same in widths of a blurred step."""
+
+SHARP_RISE_PX = 2.5
+"""Width of a step without motion, as bilinear samples of shared chroma show it."""
+
 SUPPORT_MIN = 0.7
 """Share of the outline that must be there: about three edges of four."""
 
@@ -44,7 +49,6 @@ WIDE = 0.2
 def locate(
     yuyv: NDArray[np.uint8],
     blob: Blob,
-    model: ColourModel,
     shape: ObjectShape,
     camera: PinholeCamera,
     estimator: Estimator = "exact",
@@ -54,10 +58,9 @@ def locate(
     yuyv: (H, W, 2) uint8, the whole picture, of the camera's size. None when the blob's outline is
     not that of the shape.
     """
-    del model
     coarse = first_readings(outline_of(blob), shape, camera)
     seen = _refined(coarse, yuyv, shape, camera)
-    on_edges = _result(seen, PICTURE_NOISE, blob, shape, camera, estimator)
+    on_edges = _result(seen, _picture_noise(seen), blob, shape, camera, estimator)
     if on_edges is not None:
         return on_edges
     return _result(coarse, _coarse_noise(blob), blob, shape, camera, estimator)
@@ -71,11 +74,19 @@ def _refined(
         return []
     wide = max(2.5 * coarse[0].outline.grain_px, NEAR_PX)
     outline = seen_on_picture(coarse[0], yuyv, shape, camera, wide, WIDE)
-    found = [] if outline is None else next_readings(outline, shape, camera, coarse)
+    if outline is None:
+        return []
+    found = next_readings(outline, shape, camera, coarse)
+    near = max(NEAR_PX, NEAR_RISES * outline.rise_px)
     for _ in range(2):
-        closer = (on_picture(reading, yuyv, shape, camera, NEAR_PX) for reading in found)
+        closer = (on_picture(reading, yuyv, shape, camera, near) for reading in found)
         found = [reading for reading in closer if reading is not None]
     return found
+
+
+def _picture_noise(found: list[Reading]) -> EdgeNoise:
+    blur = max((reading.outline.rise_px / SHARP_RISE_PX for reading in found), default=1.0)
+    return PICTURE_NOISE.blurred(max(blur, 1.0))
 
 
 def locate_mask(

@@ -23,7 +23,7 @@ class Outline:
     """Edge points (n, 2) in pixels with weights (n,), and how coarse they are.
 
     `grain_px`: their resolution. `clipped`: sides of the picture that cut the object. `missed`:
-    places where an edge was looked for in vain.
+    places where an edge was looked for in vain. `rise_px`: width of the more blurred edges.
     """
 
     points_px: NDArray[np.float64]
@@ -31,6 +31,7 @@ class Outline:
     grain_px: float
     clipped: tuple[str, ...]
     missed: int = 0
+    rise_px: float = 0.0
 
     def thinned(self, most: int) -> Outline:
         """About so many of the points, spread evenly."""

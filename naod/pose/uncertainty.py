@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,13 @@ class EdgeNoise:
     edge_px: float
     per_point: float
     fits_px: float
+
+    def blurred(self, factor: float) -> EdgeNoise:
+        """The same where steps are so many times as wide: more neighbours err together.
+
+        Blur takes nothing from where an edge is on the whole, since it is symmetric.
+        """
+        return replace(self, per_point=self.per_point * factor, fits_px=self.fits_px * factor)
 
 
 def point_sigma(fit: Fit, noise: EdgeNoise) -> float:
