@@ -1,0 +1,86 @@
+"""Buffers that the exact optimum works in, and what the cells of its padded field mean."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+BACKGROUND, BORDER, OPEN, OBJECT = 0x00, 0x11, 0x20, 0x22
+"""Codes of cells. The lower digit is 0, 1 or 2 for background, beyond the border and object while
+an open cell is taken for background, the upper one the same while it is taken for object: four
+neighbours' codes added up count both ways at once, and the border weighs on neither side."""
+
+CELLS_A_WORD = 8
+
+CANDIDATES, UNDECIDED, WAVES, VISITS, LIFTS = range(5)
+"""Counts of a solve: pixels not decided by their own difference; pixels the bounds left open; waves
+of the cut; cells that waves came by, each wave anew; single cells lifted between waves."""
+
+# Cells are unsigned throughout: an index that may be negative costs a test at every access.
+_ZERO, _ONE = np.uint64(0), np.uint64(1)
+
+
+class Field(NamedTuple):
+    """A field of (height, width) pixels with a border, its cells in rows of `pitch`.
+
+    Pixel (i, j) is cell (i + 1) * pitch + j. Rows are whole words; the column after a row's last
+    pixel is the border of that row and of the next.
+    """
+
+    codes: NDArray[np.uint8]  # (cells,)
+    rows: NDArray[np.uint8]  # (height + 2, pitch), the same memory
+    words: NDArray[np.uint64]  # (height + 2, pitch / 8), the same memory
+    differences: NDArray[np.int32]  # (cells,), of candidates only
+    candidates: NDArray[np.uint32]  # (pixels + 1,), cells
+    pending: NDArray[np.uint32]  # (pixels + 1,), a stack of cells to come back to
+    excess: NDArray[np.int32]  # (cells,), what a cell would cost as object; negative is a need
+    residual: NDArray[np.int32]  # (cells, 4), capacity left to the left, right, up and down
+    level: NDArray[np.int32]  # (cells,), steps to a need, 0 outside the component being cut
+    nodes: NDArray[np.uint32]  # (pixels + 1,), cells of that component
+    queue: NDArray[np.uint32]  # (pixels + 1,), those of them that reach a need, nearest first
+    counts: NDArray[np.int64]  # (5,), see CANDIDATES
+
+
+def empty_field(height: int, width: int) -> Field:
+    """All the memory that fields of this size ever need."""
+    pitch = -(-(width + 1) // CELLS_A_WORD) * CELLS_A_WORD
+    rows = np.full((height + 2, pitch), BORDER, dtype=np.uint8)
+    cells = rows.size
+    # one more than there are pixels, so that a list may be written first and lengthened if it holds
+    room = height * width + 1
+    return Field(
+        codes=rows.reshape(-1),
+        rows=rows,
+        words=rows.view(np.uint64),
+        differences=np.zeros(cells, dtype=np.int32),
+        candidates=np.zeros(room, dtype=np.uint32),
+        pending=np.zeros(room, dtype=np.uint32),
+        excess=np.zeros(cells, dtype=np.int32),
+        residual=np.zeros((cells, 4), dtype=np.int32),
+        level=np.zeros(cells, dtype=np.int32),
+        nodes=np.zeros(room, dtype=np.uint32),
+        queue=np.zeros(room, dtype=np.uint32),
+        counts=np.zeros(5, dtype=np.int64),
+    )
+
+
+@njit(cache=True, nogil=True)
+def sides(field: Field) -> tuple[np.uint64, np.uint64, np.uint64, np.uint64]:
+    """What to add to a cell for its left, right, upper and lower neighbour, modulo 2^64.
+
+    Side k of a cell is side k ^ 1 of the neighbour.
+    """
+    pitch = np.uint64(field.rows.shape[1])
+    return _ZERO - _ONE, _ONE, _ZERO - pitch, pitch
+
+
+@njit(cache=True, nogil=True)
+def neighbourhood(field: Field, cell: np.uint64) -> int:
+    """Sum of the codes of the four neighbours."""
+    left, right, up, down = sides(field)
+    codes = field.codes
+    across = np.int64(codes[cell + left]) + codes[cell + right]
+    return across + codes[cell + up] + codes[cell + down]
