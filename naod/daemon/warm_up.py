@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from hal.errors import HalError
 from hal.protocols import Robot
-from hal.types import Frame
-from naod.loop.equipment import Equipment
+from hal.types import BodyState, Frame
+from naod.geometry.camera import PinholeCamera
+from naod.loop.equipment import Equipment, Sighting
 from naod.perception.colour_model import Region, learn
+from naod.pose.objects import Cylinder, ObjectShape
 
 log = logging.getLogger(__name__)
 
@@ -29,17 +31,35 @@ def warm_up(equipment: Equipment, robot: Robot) -> None:
 
     Raises HalError when the body does not answer; a camera that does not is the loop's affair.
     """
+    writeable = False
     try:
-        robot.camera.unseen(FIRST_PICTURE_S)
+        writeable = bool(robot.camera.unseen(FIRST_PICTURE_S).yuyv.flags.writeable)
     except HalError as error:
         log.warning("no first picture: %s", error)
-    body = robot.body.latest()
-    camera = equipment.camera
-    width, height = camera.width // 10 * 2, camera.height // 4
-    region = Region((camera.width - width) // 4 * 2, (camera.height - height) // 2, width, height)
+    sighting = rehearse(equipment, robot.body.latest(), writeable)
+    if sighting is None or sighting.pose is None:
+        log.warning("the painted object was not localised: the first look may take longer")
+
+
+def rehearse(equipment: Equipment, body: BodyState, writeable: bool = False) -> Sighting | None:
+    """What is seen of an object painted in the middle of the picture, a quarter of its height.
+
+    `writeable` is as in the camera's own pictures: kernels are compiled anew for the other kind.
+    """
+    camera, region = equipment.camera, _silhouette(equipment.shape, equipment.camera)
     yuyv = _painted(camera.width, camera.height, region)
+    yuyv.flags.writeable = writeable
     frame = Frame(body.stamp_ns, yuyv, equipment.camera_name, 0.01, 0)
-    equipment.sight(learn([yuyv, yuyv], region), frame, body)
+    return equipment.sight(learn([yuyv, yuyv], region), frame, body)
+
+
+def _silhouette(shape: ObjectShape, camera: PinholeCamera) -> Region:
+    """The object seen straight on; its width is on whole pairs of pixels."""
+    wide = 2.0 * shape.radius_m if isinstance(shape, Cylinder) else shape.width_m
+    height = camera.height // 4
+    width = round(height * wide / shape.height_m * camera.fx / camera.fy / 2.0) * 2
+    width = min(max(width, 8), camera.width // 2 // 2 * 2)
+    return Region((camera.width - width) // 4 * 2, (camera.height - height) // 2, width, height)
 
 
 def _painted(width: int, height: int, region: Region) -> NDArray[np.uint8]:
