@@ -19,6 +19,9 @@ from naod.loop.walking import follow, send_step, send_stop
 NO_PICTURE_NS = 1_000_000_000
 """S3: without a fresh picture for so long, stop."""
 
+PATIENCE_NS = 15_000_000_000
+"""Standing before something that gives no looks for so long, it is not the object."""
+
 
 def approach(equipment: Equipment, state: LoopState, seen: Observation, out: Outbox) -> LoopState:
     """One tick of an approach that is under way."""
@@ -30,17 +33,20 @@ def approach(equipment: Equipment, state: LoopState, seen: Observation, out: Out
     if state.move is not None:
         return _while_walking(state, out)
     if seen.walk.held_by is not None:
-        return replace(state, phase="held", looks=())
+        return replace(state, phase="held", looks=(), waiting_from_ns=None)
     return _while_standing(equipment, state, out)
 
 
 def _while_standing(equipment: Equipment, state: LoopState, out: Outbox) -> LoopState:
     if state.search_from_ns is not None:
-        return _while_lost(equipment, state, out)
-    if len(state.looks) < equipment.config.approach.looks:
-        settling = state.phase == "settle" and not state.looks
-        return replace(state, phase="settle" if settling else "look")
-    return _decide(equipment, state, out)
+        return _while_lost(equipment, replace(state, waiting_from_ns=None), out)
+    if len(state.looks) >= equipment.config.approach.looks:
+        return _decide(equipment, state, out)
+    since_ns = state.waiting_from_ns or out.now_ns
+    if out.now_ns - since_ns > PATIENCE_NS:
+        return fail(state, _why_no_looks(state, out.now_ns), out)
+    settling = state.phase == "settle" and not state.looks
+    return replace(state, phase="settle" if settling else "look", waiting_from_ns=since_ns)
 
 
 def fail(state: LoopState, why: str, out: Outbox) -> LoopState:
@@ -72,10 +78,19 @@ def within(error: PlanarMotion, config: ApproachConfig) -> bool:
 
 
 def _while_walking(state: LoopState, out: Outbox) -> LoopState:
-    blind = state.frame_ns is None or out.now_ns - state.frame_ns > NO_PICTURE_NS
-    if blind:
+    if _is_blind(state, out.now_ns):
         return fail(state, "no picture from the camera for 1 s", out)
     return state
+
+
+def _is_blind(state: LoopState, now_ns: int) -> bool:
+    return state.frame_ns is None or now_ns - state.frame_ns > NO_PICTURE_NS
+
+
+def _why_no_looks(state: LoopState, now_ns: int) -> str:
+    if _is_blind(state, now_ns):
+        return "no picture from the camera"
+    return "something of the object's colour is in view, but not the object's outline"
 
 
 def _while_lost(equipment: Equipment, state: LoopState, out: Outbox) -> LoopState:

@@ -69,7 +69,7 @@ def _start(
     out.event("started", f"approach to {verb.goal}")
     return replace(
         state, mode="approach", phase="centre", goal=verb.goal, move=None, looks=(), error=None,
-        moves=0, search_from_ns=None,
+        moves=0, search_from_ns=None, waiting_from_ns=None,
     )  # fmt: skip
 
 

@@ -67,7 +67,10 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class LoopState:
-    """The loop's memory. `looks` are those taken from the present stance, object centred."""
+    """The loop's memory. `looks` are those taken from the present stance, object centred.
+
+    `waiting_from_ns`: since when an approach has stood there waiting for looks.
+    """
 
     mode: Mode = "idle"
     phase: Phase = "idle"
@@ -81,6 +84,7 @@ class LoopState:
     frame_ns: int | None = None
     target: Target | None = None
     search_from_ns: int | None = None
+    waiting_from_ns: int | None = None
     looks: tuple[Look, ...] = ()
     error: PlanarMotion | None = None
     moves: int = 0

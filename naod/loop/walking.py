@@ -29,7 +29,7 @@ def send_step(state: LoopState, step: PlanarMotion, out: Outbox) -> LoopState:
     move = Move(seq, out.now_ns, step)
     return replace(
         state, phase="walk", move=move, looks=(), walk_seq=seq, moves=state.moves + 1,
-        still_since_ns=None,
+        still_since_ns=None, waiting_from_ns=None,
     )  # fmt: skip
 
 

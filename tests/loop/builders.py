@@ -75,6 +75,7 @@ class Bench:
         self.sees: EgoPose | None = ego(1.0, 0.0)
         self.ray = np.array([0.0, 0.0, 1.0])
         self.camera_on = True
+        self.with_pose = True
         self.events = []
 
     def tick(self, *verbs, ticks=1):
@@ -120,8 +121,8 @@ class Bench:
             ray_in_camera=self.ray,
             head=HeadAngles(0.0, 0.0),
             T_torso_camera=self.equipment.body.frames(posture("StandInit")).T_torso_camera,
-            pose=pose,
-            look=Look(self.now_ns, self.sees, np.eye(4) * 1e-6),
+            pose=pose if self.with_pose else None,
+            look=Look(self.now_ns, self.sees, np.eye(4) * 1e-6) if self.with_pose else None,
             paper=None,
         )
 

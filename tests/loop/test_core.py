@@ -88,6 +88,17 @@ def test_without_pictures_it_never_sets_out():
     bench.tick(Start("desk"))
     for _ in range(300):
         assert not is_step(bench.tick())
+    assert bench.state.phase == "failed"
+
+
+def test_what_has_the_colour_but_not_the_outline_is_not_stared_at_for_ever():
+    bench = Bench()
+    bench.with_pose = False
+    bench.tick(Start("desk"))
+    for _ in range(300):
+        assert not is_step(bench.tick())
+    assert bench.state.phase == "failed"
+    assert bench.state.mode == "track"
 
 
 def test_an_object_off_centre_turns_the_head_before_anything_walks():
