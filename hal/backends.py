@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import cast
 
 from hal.errors import BackendError
 from hal.protocols import Robot
+from hal.simulation import Studio
 from hal.types import CameraName, NaoVersion
 
 BACKENDS: dict[str, str] = {
     "sim": "sim_backend.backend:open_robot",
+}
+
+STUDIOS: dict[str, str] = {
+    "sim": "sim_backend.studio:open_studio",
 }
 
 
@@ -36,11 +41,23 @@ class OpenOptions:
 
 def open_robot(backend: str, options: OpenOptions) -> Robot:
     """Open a robot by the name of its backend. Raises BackendError."""
-    if backend not in BACKENDS:
-        raise BackendError(f"unknown backend {backend!r}; known: {', '.join(sorted(BACKENDS))}")
-    module_name, _, function = BACKENDS[backend].partition(":")
+    return cast(Robot, _named(BACKENDS, backend)(options))
+
+
+def open_studio(backend: str, options: OpenOptions) -> Studio:
+    """Open a backend's studio, which takes pictures without a robot.
+
+    It is told what a robot's backend is told. Raises BackendError or ScenarioError.
+    """
+    return cast(Studio, _named(STUDIOS, backend)(options))
+
+
+def _named(table: Mapping[str, str], backend: str) -> Callable[[OpenOptions], object]:
+    if backend not in table:
+        raise BackendError(f"unknown backend {backend!r}; known: {', '.join(sorted(table))}")
+    module_name, _, function = table[backend].partition(":")
     try:
         module = importlib.import_module(module_name)
     except ImportError as error:
         raise BackendError(f"backend {backend!r} is not installed: {error}") from error
-    return cast(Robot, getattr(module, function)(options))
+    return cast(Callable[[OpenOptions], object], getattr(module, function))

@@ -52,3 +52,33 @@ class SimulatedRobot(Robot, Protocol):
     def room_view(self, width: int, height: int) -> NDArray[np.uint8]:
         """The scene from a fixed place in the room, (height, width, 3) uint8 RGB."""
         ...
+
+
+class Studio(Protocol):
+    """Pictures and exact masks of a simulated scene from any camera pose, without a robot.
+
+    Poses are T_world_camera (4, 4), optical axes. `exposure_poses` (n, 4, 4): where the camera is
+    at equal times from the exposure's begin to its end, in place of the one pose.
+    """
+
+    @property
+    def T_world_object(self) -> NDArray[np.float64]:
+        """Where the object is, axes as in `Truth`."""
+        ...
+
+    def frame_at(
+        self,
+        T_world_camera: NDArray[np.float64],
+        exposure_poses: NDArray[np.float64] | None = None,
+        noise_seed: int | None = None,
+    ) -> NDArray[np.uint8]:
+        """YUYV (height, width, 2) uint8, with the scenario's sensor noise if seeded."""
+        ...
+
+    def mask_at(
+        self,
+        T_world_camera: NDArray[np.float64],
+        exposure_poses: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.uint8]:
+        """255 where at least half of a pixel, and of the exposure, shows the object, else 0."""
+        ...

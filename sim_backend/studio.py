@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from hal.backends import OpenOptions
 from hal.nao.cameras import nominal_pinhole
 from hal.scenario import Scenario
 from hal.types import NaoVersion
@@ -14,6 +15,7 @@ from sim_backend.defaults import resolved
 from sim_backend.develop import developed, rgb_levels
 from sim_backend.exposure import brightness_at
 from sim_backend.furniture import object_frame
+from sim_backend.options import checked
 from sim_backend.poses import Matrix, interpolated
 from sim_backend.raycast_types import SAMPLES
 from sim_backend.renderer import Shot, object_hits, picture
@@ -93,6 +95,13 @@ class Studio:
         moments = T_world_camera[None] if poses is None else _spread(np.asarray(poses))
         nobody = np.broadcast_to(_NOBODY, (len(moments), 0, 4, 4))
         return Shot(self._lens, np.asarray(moments, dtype=np.float64), nobody, self._brightness)
+
+
+def open_studio(options: OpenOptions) -> Studio:
+    """The studio of `hal.backends`. Raises BackendError or ScenarioError."""
+    told = checked(options)
+    size = (options.width, options.height)
+    return Studio(told.scenario, told.version, *size, told.folder, told.seed)
 
 
 def _spread(poses: NDArray[np.float64]) -> NDArray[np.float64]:
