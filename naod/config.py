@@ -90,12 +90,15 @@ class BusConfig(_Section, frozen=True):
 class SegmentationConfig(_Section, frozen=True):
     """The energy (equation 3) and how it is brought down.
 
+    `optimiser`: "exact" is its minimum; "icm" the paper's Algorithm 2, which alone has use for
+    `settled` and `sweeps_max`.
     `light_std`: relative change of brightness between learning and seeing, and over the object's
     own shades, that the colour model is widened by; 0 leaves it as learnt.
     """
 
     width: Literal[80, 160, 320] = 160
-    beta: NotNegative = 1.0
+    optimiser: Literal["exact", "icm"] = "exact"
+    beta: Annotated[float, Meta(ge=0.0, le=1e5)] = 1.0
     background_energy: Positive = 16.6
     light_std: NotNegative = 0.12
     settled: NotNegative = 1e-3

@@ -86,5 +86,5 @@ def _readable(line: dict[str, object]) -> str:
     found = "found" if line["found"] else "not found"
     return (
         f"{line['input']}: {found}, {line['pixels']} pixels, energy {line['energy']:.0f}, "
-        f"{line['iterations']} sweeps, {line['ms']} ms"
+        f"{line['iterations']} iterations, {line['ms']} ms"
     )

@@ -11,6 +11,7 @@ from naod.config import SegmentationConfig
 from naod.perception.colour_model import ColourModel
 from naod.perception.energy import STEPS, Singletons
 from naod.perception.icm import descend, label_by_singletons
+from naod.perception.optimum import Optimum
 from naod.perception.reduction import Reduction
 
 
@@ -20,7 +21,8 @@ class Segmentation:
 
     `mask`: (h, w) uint8, 1 = object. `energy`: of equation 3, in nat, the background's included.
     `scale`: full pixels per reduced pixel, in both directions. `size`: full width and height.
-    `settled`: the energy came to rest within the sweeps allowed.
+    `iterations`: sweeps of ICM, or waves of the exact cut, 0 where nothing was left to cut.
+    `settled`: the energy came to rest within the sweeps allowed; the exact minimum always is.
     """
 
     mask: NDArray[np.uint8]
@@ -44,6 +46,7 @@ class Segmenter:
         self._differences = np.zeros(shape, dtype=np.int32)
         self._labels = np.zeros(shape, dtype=np.uint8)
         self._energies = np.zeros(settings.sweeps_max + 1, dtype=np.int64)
+        self._optimum = Optimum(*shape)
 
     @property
     def beta_steps(self) -> int:
@@ -59,17 +62,25 @@ class Segmenter:
         """Label a picture (H, W, 2) uint8 of the size given at the start; ValueError otherwise."""
         picture = self.reduction(yuyv)
         self.singletons.differences(picture, self._differences)
+        exact = self.settings.optimiser == "exact"
+        energy, iterations, settled = self._minimise() if exact else self._descend()
+        return Segmentation(
+            mask=self._labels.copy(),
+            energy=self._labels.size * self.settings.background_energy + energy / STEPS,
+            iterations=iterations,
+            scale=float(self.reduction.block),
+            size=self.reduction.size,
+            settled=settled,
+        )
+
+    def _minimise(self) -> tuple[int, int, bool]:
+        energy = self._optimum.minimise(self._differences, self.beta_steps, self._labels)
+        return energy, self._optimum.waves, True
+
+    def _descend(self) -> tuple[int, int, bool]:
         label_by_singletons(self._differences, self._labels)
         sweeps = descend(
             self._differences, self._labels, self.beta_steps, self.settled_steps, self._energies
         )
         last = int(self._energies[sweeps] - self._energies[sweeps - 1])
-        return Segmentation(
-            mask=self._labels.copy(),
-            energy=self._labels.size * self.settings.background_energy
-            + float(self._energies[sweeps]) / STEPS,
-            iterations=sweeps,
-            scale=float(self.reduction.block),
-            size=self.reduction.size,
-            settled=-last < self.settled_steps,
-        )
+        return int(self._energies[sweeps]), sweeps, -last < self.settled_steps
