@@ -90,21 +90,27 @@ def blob_of(
     )
 
 
-def oriented_box(points: NDArray[np.float64]) -> NDArray[np.float64]:
+UP = np.array([0.0, -1.0])
+"""Towards the top of a picture."""
+
+
+def oriented_box(points: NDArray[np.float64], up: NDArray[np.float64] = UP) -> NDArray[np.float64]:
     """(4, 2) corners G, H, J, K of the smallest rectangle around points (n, 2)."""
     box = cv2.boxPoints(cv2.minAreaRect(points.astype(np.float32)))
-    return ordered_corners(np.asarray(box, dtype=np.float64))
+    return ordered_corners(np.asarray(box, dtype=np.float64), up)
 
 
-def ordered_corners(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def ordered_corners(
+    corners: NDArray[np.float64], up: NDArray[np.float64] = UP
+) -> NDArray[np.float64]:
     """Four corners (4, 2) as top left, top right, bottom right, bottom left, as seen.
 
-    The upper edge is the one whose middle lies highest above the centre.
+    The upper edge is the one whose middle lies furthest along `up` from the centre.
     """
     offset = corners - corners.mean(axis=0)
     around = corners[np.argsort(np.arctan2(offset[:, 1], offset[:, 0]))]
     middles = (around + np.roll(around, -1, axis=0)) / 2.0
-    return np.roll(around, -int(np.argmin(middles[:, 1])), axis=0)
+    return np.roll(around, -int(np.argmax(middles @ up)), axis=0)
 
 
 def _full(points: NDArray[np.float64], grain_px: float) -> NDArray[np.float64]:

@@ -120,6 +120,24 @@ def _foot(
 
 
 @njit(cache=True, nogil=True)
+def _tangent(
+    R: NDArray[np.float64], X: NDArray[np.float64], u: float, v: float, du: float, dv: float
+) -> tuple[float, float]:
+    """Direction of a rim at its point X, seen at (u, v); the chord's where the rim turns sharply.
+
+    A rim seen from its own height is a line there and back, and no tangent where it turns.
+    """
+    x = R[0, 0] * X[2] - R[0, 2] * X[0]
+    y = R[1, 0] * X[2] - R[1, 2] * X[0]
+    z = R[2, 0] * X[2] - R[2, 2] * X[0]
+    tu, tv = x - u * z, y - v * z
+    along = tu * du + tv * dv
+    if abs(along) < 0.9 * math.hypot(tu, tv) * math.hypot(du, dv):
+        return du, dv
+    return (tu, tv) if along > 0.0 else (-tu, -tv)
+
+
+@njit(cache=True, nogil=True)
 def compare(
     kind: int,
     half_width: float,
@@ -148,6 +166,8 @@ def compare(
         depth = max(a2 + t[2], DEPTH_MIN_M)
         pu, pv = (a0 + t[0]) / depth, (a1 + t[1]) / depth
         du, dv = image[piece + 1, 0] - image[piece, 0], image[piece + 1, 1] - image[piece, 1]
+        if is_arc(kind, names[piece]):
+            du, dv = _tangent(R, X, pu, pv, du, dv)
         length = max(math.hypot(du, dv), 1e-12)
         nu, nv = dv / length, -du / length
         residuals[i] = nu * (u - pu) + nv * (v - pv)

@@ -8,6 +8,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from hal.scenario import ThingSection
 from naod.files import read_toml
 
 Positive = Annotated[float, Meta(gt=0.0)]
@@ -47,3 +48,12 @@ ObjectShape = Cylinder | Rectangle
 def load_object(path: Path) -> ObjectShape:
     """Read OBJECT.toml. Raises InputError that names the file and the key."""
     return read_toml(path, ObjectShape)  # type: ignore[arg-type]
+
+
+def shape_of(thing: ThingSection) -> ObjectShape:
+    """The object's shape and size as the robot is told them."""
+    given = {"radius_m", "height_m"} if thing.kind == "cylinder" else {"width_m", "height_m"}
+    fields = {k: v for k in sorted(given) if (v := getattr(thing, k)) is not None}
+    if thing.kind == "cylinder":
+        return msgspec.convert(fields, Cylinder)
+    return msgspec.convert(fields, Rectangle)

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
-from naod.perception.blob import ordered_corners, oriented_box
+from naod.perception.blob import oriented_box
 from naod.pose.box import line_through
-from naod.pose.contour import BOTTOM, LEFT, RIGHT, TOP
+from naod.pose.contour import BOTTOM, LEFT, RIGHT, TOP, outline_in_camera
 from naod.pose.frames import pose
 from naod.pose.objects import Cylinder, ObjectShape, Rectangle
 from naod.pose.result import ObjectPose
@@ -26,7 +26,7 @@ def paper_pose(
     camera: PinholeCamera,
     clipped: tuple[str, ...],
 ) -> ObjectPose | None:
-    """Pose from the box corners G, H, J, K of the outline's edge points; None without four edges.
+    """Pose from the box corners G, H, J, K; None where one of a rectangle's edges is not seen.
 
     The covariance is that of the edges; the printed formulas' bias is not in it.
     """
@@ -47,14 +47,17 @@ def box_corners(
 ) -> NDArray[np.float64] | None:
     """G, H, J, K (4, 2) on the plane z = 1.
 
-    For a cylinder the oriented box. For a rectangle four free lines, since a box has no tilt.
+    For a cylinder the oriented box of its fitted outline: what the printed formulas make of an
+    outline without noise. For a rectangle four free lines, since a box has no tilt.
     """
+    if isinstance(shape, Cylinder):
+        T = reading.fit.T_camera_object
+        points, _ = outline_in_camera(shape, T)
+        ends = T[:3, 3] + np.outer((1.0, -1.0), T[:3, 1] * shape.height_m / 2.0)
+        up = ends[0, :2] / ends[0, 2] - ends[1, :2] / ends[1, 2]
+        return oriented_box(points[:, :2] / points[:, 2:], up)
     sound = reading.fit.weights > 0.3
     points, edges = camera.normalised(reading.outline.points_px)[sound], reading.fit.edges[sound]
-    if len(points) < 4:
-        return None
-    if isinstance(shape, Cylinder):
-        return oriented_box(points)
     lines = [line_through(points[edges == edge]) for edge in (TOP, RIGHT, BOTTOM, LEFT)]
     corners = []
     for k in range(4):
@@ -65,7 +68,7 @@ def box_corners(
         if abs(meet[2]) < 1e-9:
             return None
         corners.append(meet[:2] / meet[2])
-    return ordered_corners(np.array(corners))
+    return np.array(corners)
 
 
 def cylinder_as_printed(corners: NDArray[np.float64], shape: Cylinder) -> NDArray[np.float64]:

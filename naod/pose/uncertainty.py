@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,10 @@ from naod.pose.objects import Cylinder, ObjectShape
 
 VAGUE = np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 """Information there is without looking: to a metre and a radian."""
+
+WEIGHTED = 1.27
+"""Variance of an estimate with Geman-McClure weights at OUTLIER deviations of normal noise, over
+what the weighted residuals give as if the weights had been known beforehand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +45,8 @@ class EdgeNoise:
 def point_sigma(fit: Fit, noise: EdgeNoise) -> float:
     """Standard deviation of one independent edge point, from the residuals, in pixels."""
     spare = max(float(fit.weights.sum()) - 6.0, 1.0)
-    return max(noise.floor_px, float(np.sqrt((fit.weights * fit.residuals**2).sum() / spare)))
+    variance = WEIGHTED * float((fit.weights * fit.residuals**2).sum()) / spare
+    return max(noise.floor_px, math.sqrt(variance))
 
 
 def covariance(

@@ -50,9 +50,7 @@ def test_board_within_half_a_percent_and_as_good_as_pnp_on_true_corners():
             errors.append(np.linalg.norm(found[:3, 3] - T[:3, 3]) / distance)
             turns.append(max(angle_deg(found[:3, k], T[:3, k]) for k in range(3)))
             seen = pose.corners_px[:, None]
-            _, _, t, _ = cv2.solvePnPGeneric(
-                corners, seen, CAMERA.K, None, flags=cv2.SOLVEPNP_IPPE
-            )
+            _, _, t, _ = cv2.solvePnPGeneric(corners, seen, CAMERA.K, None, flags=cv2.SOLVEPNP_IPPE)
             gaps = [np.linalg.norm(found[:3, 3] - ti[:, 0]) / distance for ti in t]
             pnp_errors.append(min(gaps))
     assert np.median(errors) < 0.001
@@ -101,7 +99,6 @@ def test_strong_distortion_is_undone():
 
 
 def test_clipped_by_one_border_it_uses_the_other_edges_and_says_so():
-    rng = np.random.default_rng(3)
     for shape, T, side in (
         (CAN, can_pose((0.0, 0.17, 0.5), 0.2), "bottom"),
         (CAN, can_pose((0.02, -0.16, 0.5), 0.3), "top"),
@@ -109,8 +106,6 @@ def test_clipped_by_one_border_it_uses_the_other_edges_and_says_so():
         (BOARD, board_pose((-0.30, 0.0, 0.8), 0.2, 0.3), "left"),
         (BOARD, board_pose((0.0, 0.27, 0.8), 0.3, 0.1), "bottom"),
     ):
-        del rng
-        rng = np.random.default_rng(3)
         pose = locate_mask(mask_of(shape, T), shape, CAMERA)
         distance = np.linalg.norm(T[:3, 3])
         assert pose.clipped == (side,)

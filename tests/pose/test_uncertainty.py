@@ -1,0 +1,49 @@
+"""Stated covariances against the scatter of estimates from noisy edges."""
+
+import numpy as np
+import pytest
+from edge_places import edge_places
+from raster import BOARD, CAMERA, CAN, board_pose, can_pose
+
+from naod.pose.fit import fit_outline
+from naod.pose.search import upright
+from naod.pose.uncertainty import EdgeNoise, covariance
+
+CASES = [(CAN, can_pose((0.02, 0.05, 0.5), 0.5)), (BOARD, board_pose((0.0, 0.1, 0.8), 0.3, 0.4))]
+
+
+def normalised_error(shape, T, offsets, noise):
+    places, normals = edge_places(shape, T)
+    points = CAMERA.normalised(places + offsets[:, None] * normals)
+    fit = upright(fit_outline(shape, T, points, CAMERA.fx, 0.3), shape)
+    gap = fit.T_camera_object[:3, 3] - T[:3, 3]
+    return gap @ np.linalg.solve(covariance(fit, shape, noise)[:3, :3], gap) / 3.0
+
+
+@pytest.mark.parametrize(("shape", "T"), CASES)
+def test_independent_noise_is_stated_as_it_is(shape, T):
+    rng = np.random.default_rng(7)
+    noise = EdgeNoise(floor_px=0.05, common_px=0.0, edge_px=0.0, per_point=1.0, fits_px=2.0)
+    errors = [normalised_error(shape, T, rng.normal(0, 0.4, 240), noise) for _ in range(150)]
+    assert 0.75 < np.mean(errors) < 1.35
+
+
+@pytest.mark.parametrize(("shape", "T"), CASES)
+def test_an_outline_too_wide_or_narrow_as_a_whole_is_stated_too(shape, T):
+    rng = np.random.default_rng(8)
+    noise = EdgeNoise(floor_px=0.05, common_px=0.3, edge_px=0.0, per_point=1.0, fits_px=2.0)
+    errors = [
+        normalised_error(shape, T, rng.normal(0, 0.1, 240) + rng.normal(0, 0.3), noise)
+        for _ in range(150)
+    ]
+    assert 0.2 < np.mean(errors) < 1.5
+
+
+def test_the_turn_of_a_can_about_itself_has_no_variance():
+    shape, T = CASES[0]
+    places, _ = edge_places(shape, T)
+    fit = fit_outline(shape, T, CAMERA.normalised(places), CAMERA.fx, 0.3)
+    total = covariance(fit, shape, EdgeNoise(0.3, 0.1, 0.1, 3.0, 1.0))
+    axis = fit.T_camera_object[:3, 1]
+    assert axis @ total[3:, 3:] @ axis < 1e-6
+    assert np.linalg.eigvalsh(total).min() > -1e-12
