@@ -179,6 +179,16 @@ class StatusReply(Message, frozen=True, kw_only=True):
     diagnostics: DiagnosticsMessage | None
 
 
+class PictureReply(Message, frozen=True, kw_only=True):
+    """Answer to `rpc/picture`: the newest picture, `jpeg` in base64; size in pixels."""
+
+    ok: Literal[True] = True
+    stamp_ns: int
+    width: int
+    height: int
+    jpeg: bytes
+
+
 class FailureDetail(Message, frozen=True):
     """`code` is for programs, `message` for people."""
 

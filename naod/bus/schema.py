@@ -33,12 +33,14 @@ CALLED: dict[str, type[Message]] = {
     "label": messages.LabelCall,
     "teach": messages.GoalCall,
     "goals": messages.NoArguments,
+    "picture": messages.NoArguments,
     "walk": messages.WalkCommand,
     "head": messages.HeadCommand,
 }
 
 ANSWERED: dict[str, type[Message]] = {
     "status": messages.StatusReply,
+    "picture": messages.PictureReply,
     "failure": messages.FailureReply,
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 from naod.cli import ctl_drive, ctl_verbs, ctl_watch
 
@@ -67,6 +68,8 @@ def _add_simple(verb: _Adder) -> None:
     verb("stop", "stop walking, whoever walks", ctl_verbs.simple)
     verb("estop", "stop, and refuse every walk until release", ctl_verbs.simple)
     verb("release", "let go of the estop; nothing moves by that", ctl_verbs.simple)
+    picture = verb("picture", "keep what the robot sees, to find a region", ctl_verbs.picture)
+    picture.add_argument("file", type=Path, metavar="FILE.jpg")
     label = verb("label", "learn the object's colour from a part of the picture", ctl_verbs.label)
     label.add_argument("region", metavar="X,Y,W,H", help="in pixels of the camera's picture")
     teach = verb("teach", "remember the present pose as a goal", ctl_verbs.teach)

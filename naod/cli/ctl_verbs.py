@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import base64
 import math
 from typing import Any
 
 from naod.bus.client import Client
 from naod.cli.output import Progress, print_json
 from naod.errors import InputError
+from naod.files import write_whole
 from naod.messages import GoalCall, LabelCall, Message
 
 LEARNING_S = 35.0
@@ -59,6 +61,17 @@ def goals(args: argparse.Namespace) -> int:
         for g in answer["goals"]
     ]
     return _show(args, answer, "\n".join(lines) or "no goal was taught yet")
+
+
+def picture(args: argparse.Namespace) -> int:
+    """Keep what the robot sees."""
+    if args.file.suffix.lower() not in (".jpg", ".jpeg"):
+        raise InputError(f"{args.file}: the picture is a JPEG, give a name that ends in .jpg")
+    answer = _asked(args, "picture")
+    write_whole(args.file, base64.b64decode(answer["jpeg"]))
+    size = f"{answer['width']}x{answer['height']}"
+    shown = {"ok": True, "file": str(args.file), "stamp_ns": answer["stamp_ns"]}
+    return _show(args, shown, f"{args.file}: {size} pixels; label X,Y,W,H counts from top left")
 
 
 def label(args: argparse.Namespace) -> int:

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from hal.errors import HalError
 from hal.protocols import Robot
+from hal.types import Frame
 from naod.bus import keys
 from naod.bus.bus import Bus
 from naod.daemon.act import Actor
@@ -65,6 +66,7 @@ class Loop:
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._run, name="loop", daemon=True)
         self._collected_ns = 0
+        self._frame: Frame | None = None
         self.diagnostics: DiagnosticsMessage | None = None
         self.before_first: Callable[[], None] = lambda: None
         self.after_tick: Callable[[], None] = lambda: None
@@ -74,6 +76,11 @@ class Loop:
     def state(self) -> LoopState:
         """The loop's memory; immutable."""
         return self._state
+
+    @property
+    def frame(self) -> Frame | None:
+        """The newest picture that was looked at."""
+        return self._frame
 
     def now_ns(self) -> int:
         """The loop's clock."""
@@ -134,7 +141,10 @@ class Loop:
             self._actor.fault("camera_failed", self._senses.camera_error, now_ns)
         self._state, commands = step(self._equipment, self._state, seen, now_ns)
         self._actor.carry_out(commands, now_ns)
-        return seen.frame.stamp_ns if seen.frame is not None else None
+        if seen.frame is None:
+            return None
+        self._frame = seen.frame
+        return seen.frame.stamp_ns
 
     def _give_up(self, now_ns: int) -> None:
         """A tick failed: stand still, forget what was under way, stay in service."""

@@ -10,7 +10,7 @@ from hal.scenario import Scenario
 from hal.simulation import SimulatedRobot
 from naod.config import DaemonConfig
 from naod.files import read_toml
-from naod.pose.objects import Cylinder, ObjectShape
+from naod.pose.objects import Cylinder, ObjectShape, shape_of
 
 
 def open_configured(config: DaemonConfig, beside: Path) -> Robot:
@@ -39,8 +39,6 @@ def shape_for(config: DaemonConfig, robot: Robot) -> ObjectShape:
     if config.object is not None:
         return config.object
     if isinstance(robot, SimulatedRobot):
-        from naod.experiment.opening import shape_of
-
         return shape_of(robot.scenario.object)
     return Cylinder()
 

@@ -10,6 +10,7 @@ from naod.bus.wire import RefusedError
 from naod.daemon.act import Actor
 from naod.daemon.desk import Desk
 from naod.daemon.loop import Loop
+from naod.daemon.pictures import jpeg_of
 from naod.errors import InputError
 from naod.loop.types import Label, Start, Stop, Teach
 from naod.messages import (
@@ -17,6 +18,7 @@ from naod.messages import (
     HeadCommand,
     LabelCall,
     NoArguments,
+    PictureReply,
     RobotMessage,
     StatusReply,
     WalkCommand,
@@ -50,6 +52,7 @@ class Verbs:
         answer("status", NoArguments, self._status, refuse)
         answer("watch", NoArguments, self._watch, refuse)
         answer("goals", NoArguments, self._goals, refuse)
+        answer("picture", NoArguments, self._picture, refuse)
         answer("start", GoalCall, self._start, refuse)
         answer("teach", GoalCall, self._teach, refuse)
         answer("label", LabelCall, self._label, refuse)
@@ -82,6 +85,21 @@ class Verbs:
     def _goals(self, _call: NoArguments, answer: Answer) -> None:
         goals = self._loop.state.goals
         answer.ok(goals=[_goal(name, goals[name]) for name in sorted(goals)])
+
+    def _picture(self, _call: NoArguments, answer: Answer) -> None:
+        frame = self._loop.frame
+        jpeg = jpeg_of(frame) if frame is not None else None
+        if frame is None or jpeg is None:
+            answer.error("no_picture", "the camera has given no picture yet")
+            return
+        answer.done(
+            PictureReply(
+                stamp_ns=frame.stamp_ns,
+                width=frame.width,
+                height=frame.height,
+                jpeg=jpeg,
+            )
+        )
 
     def _start(self, call: GoalCall, answer: Answer) -> None:
         if self._server.estopped:

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
-
 from hal.backends import OpenOptions, open_robot
 from hal.errors import BackendError
-from hal.scenario import Scenario, ThingSection
+from hal.scenario import Scenario
 from hal.simulation import SimulatedRobot
 from naod.config import DaemonConfig
 from naod.experiment.lockstep import LockStep
 from naod.files import read_toml
 from naod.loop.equipment import Equipment
-from naod.pose.objects import Cylinder, ObjectShape, Rectangle
+from naod.pose.objects import shape_of
 
 SIMULATION = "sim"
 
@@ -22,15 +20,6 @@ SIMULATION = "sim"
 def load_scenario(path: Path) -> Scenario:
     """Read SCENARIO.toml. Raises InputError that names the key."""
     return read_toml(path, Scenario)
-
-
-def shape_of(thing: ThingSection) -> ObjectShape:
-    """The object's shape and size as the robot is told them."""
-    given = {"radius_m", "height_m"} if thing.kind == "cylinder" else {"width_m", "height_m"}
-    fields = {k: v for k in sorted(given) if (v := getattr(thing, k)) is not None}
-    if thing.kind == "cylinder":
-        return msgspec.convert(fields, Cylinder)
-    return msgspec.convert(fields, Rectangle)
 
 
 def open_simulated(

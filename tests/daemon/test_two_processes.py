@@ -9,6 +9,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from daemon_process import NAOD, Daemon, Watch, naod
@@ -43,6 +44,19 @@ def ego_of(truth: dict) -> tuple[float, float]:
     x, y, yaw = truth["base"]
     dx, dy = truth["object"][0] - x, truth["object"][1] - y
     return math.hypot(dx, dy), math.remainder(math.atan2(dy, dx) - yaw, 2.0 * math.pi)
+
+
+def test_picture_shows_what_the_robot_sees(daemon: Daemon, tmp_path: Path) -> None:
+    """Whoever is to label the object has to see it first."""
+    done = daemon.ctl("picture", str(tmp_path / "view.jpg"))
+    assert done.returncode == 0, done.stderr
+    picture = cv2.imread(str(tmp_path / "view.jpg"))
+    assert picture.shape == (480, 640, 3)
+    red = (picture[..., 2] > 120) & (picture[..., 1] < 60)
+    assert red.sum() > 500
+    refused = daemon.ctl("picture", str(tmp_path / "view.bmp"))
+    assert refused.returncode == 2
+    assert ".jpg" in refused.stderr
 
 
 def test_label_teach_start_watch_stop(daemon: Daemon, region: str) -> None:
