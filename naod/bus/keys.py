@@ -21,6 +21,7 @@ VERBS = (
     "label",
     "teach",
     "goals",
+    "picture",
     "walk",
     "head",
 )
