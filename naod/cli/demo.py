@@ -62,8 +62,11 @@ def make_folder(path: Path) -> Path:
 
 def _perform(lockstep: LockStep, seed: int, folder: Path) -> Outcome:
     # matplotlib and mcap are slow to import and needed only here
-    from naod.experiment.recording import Recorder
-    from naod.experiment.report import ROOM_SIZE, Film, write_report
+    try:
+        from naod.experiment.recording import Recorder
+        from naod.experiment.report import ROOM_SIZE, Film, write_report
+    except ImportError as error:
+        raise InputError(f"{error.name} is not installed; pip install 'naod[demo]'") from error
 
     progress = Progress("showing the goal")
     experiment = Experiment(lockstep, seed)
