@@ -15,7 +15,11 @@ from naod.errors import InputError
 
 BENCHES: dict[str, str] = {
     "perception": "naod.bench.perception",
+    "approach": "naod.bench.approach",
 }
+
+QUICK = ("perception",)
+"""Run when no name is given; the others take minutes."""
 
 
 class Report(msgspec.Struct, frozen=True):

@@ -6,20 +6,23 @@ import argparse
 
 import msgspec
 
-from naod.bench.table import BENCHES, as_text, bench
+from naod.bench.table import BENCHES, QUICK, as_text, bench
 from naod.cli.output import Progress, print_json
 from naod.errors import InputError
 
 
+TEXT = f"of {', '.join(BENCHES)}; default: {', '.join(QUICK)}"
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's arguments."""
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: {', '.join(BENCHES)}")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=TEXT)
     parser.add_argument("--json", action="store_true", help="print one JSON document")
 
 
 def run(args: argparse.Namespace) -> int:
     """Exit status 0 when all ran."""
-    names = args.names or list(BENCHES)
+    names = args.names or list(QUICK)
     unknown = [name for name in names if name not in BENCHES]
     if unknown:
         raise InputError(f"no benchmark {unknown[0]!r}; there are: {', '.join(sorted(BENCHES))}")
