@@ -10,7 +10,6 @@ from naod.bench.table import BENCHES, QUICK, as_text, bench
 from naod.cli.output import Progress, print_json
 from naod.errors import InputError
 
-
 TEXT = f"of {', '.join(BENCHES)}; default: {', '.join(QUICK)}"
 
 
