@@ -17,7 +17,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--region",
         required=True,
-        type=parse_region,
         metavar="X,Y,W,H",
         help="part of each picture that shows only the object: left, top, width, height in pixels",
     )
@@ -36,23 +35,24 @@ def parse_region(text: str) -> Region:
 
 def run(args: argparse.Namespace) -> int:
     """Learn and write the model."""
+    region = parse_region(args.region)
     progress = Progress("reading")
     frames = []
     for picture in read_pictures(find_files(args.frames)):
-        if args.region.x + args.region.width > picture.width:
+        if region.x + region.width > picture.width:
             size = f"{picture.width}x{picture.height}"
             raise InputError(f"{picture.source}: the region is outside the {size} picture")
         frames.append(picture.yuyv)
         progress.tick(picture.stem)
     progress.done()
-    model = learn(frames, args.region)
+    model = learn(frames, region)
     save_model(args.out, model)
     if args.json:
         print_json(
             {
                 "model": str(args.out),
                 "frames": len(frames),
-                "pixels": len(frames) * args.region.width * args.region.height,
+                "pixels": len(frames) * region.width * region.height,
                 "mean": model.mean,
                 "covariance": model.covariance,
             }

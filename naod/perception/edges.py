@@ -2,8 +2,8 @@
 
 Along each normal the colour goes from one plateau to another. The profile is projected on the
 direction that separates the two best, the changes of brightness that shading makes inside counted
-as noise, and the edge lies where the projection is that of the colour expected at an edge: blur
-widens the step without moving it.
+as noise; where it is that of half the light of either lies the edge, roughly. `placing` then puts
+it exactly.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.linear import solve_symmetric
-from naod.perception.encoding import SPREAD_CHROMA2, SPREAD_LUMA2, lights, mixed_colour
+from naod.perception.encoding import mixture_scores
+from naod.perception.placing import PAIRS_MAX, SHARES, place_edge
 
 STEP_PX = 0.5
 SAMPLES_MAX = 129
@@ -26,10 +27,14 @@ NOISE_LEVELS = 3.0
 SHADING = 0.15
 """Relative standard deviation of brightness over a plateau inside."""
 
-MIXING_MIN_PX = 1.2
-"""Light mixes over at least a pixel's own width and what the sharpest lens adds."""
+GATHERED2 = 0.9
+"""Variance that shared chroma and bilinear samples add to a profile along a row, px squared."""
+
+OFFSET, SIGMA, WIDTH, WITHIN = range(4)
 
 SLOPE_MIN = 0.02
+SLOPE_EXACT = 0.1
+"""Where light mixes over more pixels than this says, their number is too large to matter."""
 
 CONTRAST_MIN = 3.0
 """Separation of the plateaus, in standard deviations, below which there is no edge to see."""
@@ -140,33 +145,6 @@ def _separation(
 
 
 @njit(cache=True, nogil=True)
-def _level_at_edge(
-    inner: NDArray[np.float64],
-    outer: NDArray[np.float64],
-    direction: NDArray[np.float64],
-    nx: float,
-    slope: float,
-    scratch: NDArray[np.float64],
-) -> float:
-    """Projection, 0 inside and 1 outside, of what is seen at the edge itself.
-
-    `slope` of the projected profile, per pixel, tells how far the light mixes.
-    """
-    chroma2 = SPREAD_CHROMA2 * nx * nx + SPREAD_LUMA2 * (1.0 - nx * nx)
-    gathered2 = 0.5 * (SPREAD_LUMA2 + chroma2)
-    width = math.sqrt(max(1.0 / (slope * slope) - 12.0 * gathered2, MIXING_MIN_PX**2))
-    lights(inner, scratch[0])
-    lights(outer, scratch[1])
-    mixed_colour(
-        scratch[0], scratch[1], width, math.sqrt(SPREAD_LUMA2), math.sqrt(chroma2), scratch[2]
-    )
-    total = 0.0
-    for c in range(3):
-        total += direction[c] * (scratch[2, c] - inner[c])
-    return min(max(total, 0.1), 0.9)
-
-
-@njit(cache=True, nogil=True)
 def _split(scores: NDArray[np.float64], count: int, level: float) -> int:
     """Last sample inside, for the step that fits the whole profile best; -1 if there is none."""
     total, best, at = 0.0, 0.0, -1
@@ -186,37 +164,44 @@ def _slope(scores: NDArray[np.float64], count: int, k: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _edge(
+def _crossing(
     colours: NDArray[np.float64],
     count: int,
-    nx: float,
+    inner: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    level: float,
     scores: NDArray[np.float64],
-    scratch: NDArray[np.float64],
-) -> tuple[float, float, float]:
-    """Place of the edge in a profile, in samples; its sigma, infinite if unseen; its width."""
-    inner, outer, direction = scratch[0], scratch[1], scratch[2]
-    contrast = _separation(colours, count, inner, outer, direction)
-    if contrast < CONTRAST_MIN:
-        return 0.0, np.inf, 0.0
+) -> tuple[float, float]:
+    """Where a profile is at a level, px from its middle, and its slope; slope 0 if nowhere."""
     for k in range(count):
         scores[k] = 0.0
         for c in range(3):
             scores[k] += direction[c] * (colours[k, c] - inner[c])
-    level = 0.5
-    for _ in range(2):
-        k = _split(scores, count, level)
-        slope = _slope(scores, count, k)
-        if slope < SLOPE_MIN or not scores[k] <= level <= scores[k + 1]:
-            return 0.0, np.inf, 0.0
-        level = _level_at_edge(inner, outer, direction, nx, slope, scratch[3:])
-    while k > 0 and scores[k] > level:
-        k -= 1
-    while k < count - 2 and scores[k + 1] < level:
-        k += 1
-    step = scores[k + 1] - scores[k]
-    if not step > 0.0:
-        return 0.0, np.inf, 0.0
-    return k + (level - scores[k]) / step, 1.0 / (contrast * slope), 1.0 / slope
+    k = _split(scores, count, level)
+    slope = _slope(scores, count, k)
+    if slope < SLOPE_MIN or not scores[k] <= level < scores[k + 1]:
+        return 0.0, 0.0
+    place = k + (level - scores[k]) / (scores[k + 1] - scores[k])
+    return (place - count // 2) * STEP_PX, slope
+
+
+@njit(cache=True, nogil=True)
+def _exactly(
+    yuyv: NDArray[np.uint8],
+    x: float,
+    y: float,
+    normal: NDArray[np.float64],
+    slope: float,
+    plateaus: NDArray[np.float64],
+    shares: NDArray[np.float64],
+    pairs: NDArray[np.float64],
+) -> tuple[float, float]:
+    """Shift of an edge found at (x, y) to where it exactly is, and the information about it."""
+    gathered2 = GATHERED2 * normal[0] ** 2 + 0.2 * normal[1] ** 2
+    width = math.sqrt(max(1.0 / slope**2 - 12.0 * gathered2, 1.0))
+    return place_edge(
+        yuyv, x, y, normal[0], normal[1], width, plateaus[0], plateaus[2], shares, pairs
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -226,26 +211,36 @@ def _measure(
     normals: NDArray[np.float64],
     reach: float,
     depth: float,
-    offset: NDArray[np.float64],
-    sigma: NDArray[np.float64],
-    rise: NDArray[np.float64],
-    within: NDArray[np.bool_],
-    seen: NDArray[np.bool_],
+    exact: bool,
+    found: NDArray[np.float64],
 ) -> None:
     height, width = yuyv.shape[0], yuyv.shape[1]
     colours, scores = np.empty((SAMPLES_MAX, 3)), np.empty(SAMPLES_MAX)
-    scratch = np.empty((6, 3))
+    plateaus, shares, pairs = np.empty((3, 3)), np.empty(SHARES), np.empty((PAIRS_MAX, 3))
     for i in range(places.shape[0]):
-        seen[i], offset[i], sigma[i], rise[i] = False, 0.0, np.inf, 0.0
-        x, y = places[i, 0] + reach * normals[i, 0], places[i, 1] + reach * normals[i, 1]
-        within[i] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
-        if not within[i]:
+        nx, ny = normals[i, 0], normals[i, 1]
+        x, y = places[i, 0] + reach * nx, places[i, 1] + reach * ny
+        found[i, SIGMA] = np.inf
+        found[i, WITHIN] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
+        if not found[i, WITHIN]:
             continue
         count = _profile(yuyv, places[i], normals[i], reach, depth, colours)
-        place, sigma[i], rise[i] = _edge(colours, count, normals[i, 0], scores, scratch)
-        if sigma[i] < np.inf:
-            offset[i] = (place - count // 2) * STEP_PX
-            seen[i] = True
+        contrast = _separation(colours, count, plateaus[0], plateaus[1], plateaus[2])
+        if contrast < CONTRAST_MIN:
+            continue
+        mixture_scores(plateaus[0], plateaus[1], plateaus[2], shares)
+        half = shares[SHARES // 2]
+        offset, slope = _crossing(colours, count, plateaus[0], plateaus[2], half, scores)
+        if slope == 0.0:
+            continue
+        information = slope * slope
+        if exact and slope > SLOPE_EXACT:
+            x, y = places[i, 0] + offset * nx, places[i, 1] + offset * ny
+            shift, information = _exactly(yuyv, x, y, normals[i], slope, plateaus, shares, pairs)
+            offset += shift
+        if information > 0.0:
+            found[i, OFFSET], found[i, WIDTH] = offset, 1.0 / slope
+            found[i, SIGMA] = 1.0 / (contrast * math.sqrt(information))
 
 
 def measure_edges(
@@ -254,26 +249,28 @@ def measure_edges(
     normals: NDArray[np.float64],
     reach_px: float,
     depth_px: float,
+    exact: bool = True,
 ) -> Edges:
     """Look for the edge of the object across each place.
 
     places_px, normals: (n, 2), unit normals outwards, of the picture (H, W, 2) uint8. reach_px:
-    how far to look on either side; depth_px: how far inside the object surely goes on.
+    how far to look on either side; depth_px: how far inside the object surely goes on. exact:
+    put each where its pixels say, not only where its profile is half-way.
     """
-    n = len(places_px)
-    flags = np.empty((2, n), dtype=np.bool_)
-    out = Edges(np.empty(n), np.empty(n), np.empty(n), flags[0], flags[1])
-    reach = min(reach_px, (SAMPLES_MAX // 2) * STEP_PX)
+    found = np.zeros((len(places_px), 4))
     _measure(
         np.ascontiguousarray(yuyv),
         np.ascontiguousarray(places_px),
         np.ascontiguousarray(normals),
-        reach,
+        min(reach_px, (SAMPLES_MAX // 2) * STEP_PX),
         depth_px,
-        out.offset_px,
-        out.sigma_px,
-        out.width_px,
-        out.within,
-        out.seen,
+        exact,
+        found,
     )
-    return out
+    return Edges(
+        offset_px=found[:, OFFSET],
+        sigma_px=found[:, SIGMA],
+        width_px=found[:, WIDTH],
+        within=found[:, WITHIN] > 0.0,
+        seen=np.isfinite(found[:, SIGMA]),
+    )

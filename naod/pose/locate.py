@@ -78,8 +78,8 @@ def _refined(
         return []
     found = next_readings(outline, shape, camera, coarse)
     near = max(NEAR_PX, NEAR_RISES * outline.rise_px)
-    for _ in range(2):
-        closer = (on_picture(reading, yuyv, shape, camera, near) for reading in found)
+    for exact in (False, True):
+        closer = (on_picture(reading, yuyv, shape, camera, near, exact) for reading in found)
         found = [reading for reading in closer if reading is not None]
     return found
 

@@ -90,14 +90,16 @@ def seen_on_picture(
     camera: PinholeCamera,
     reach_px: float,
     reach_share: float = 0.0,
+    exact: bool = False,
 ) -> Outline | None:
     """The picture's own edges near a reading; None where too few are seen.
 
-    Near is `reach_px`, or `reach_share` of the object's width if that is more.
+    Near is `reach_px`, or `reach_share` of the object's width if that is more. `exact`: as
+    `measure_edges` has it.
     """
     places, normals, width = profile_places(reading.fit.T_camera_object, shape, camera)
     reach = max(reach_px, reach_share * width)
-    edges = measure_edges(yuyv, places, normals, reach, 0.4 * width)
+    edges = measure_edges(yuyv, places, normals, reach, 0.4 * width, exact)
     if edges.seen.sum() < POINTS_MIN:
         return None
     points_px = (places + edges.offset_px[:, None] * normals)[edges.seen]
@@ -108,7 +110,7 @@ def seen_on_picture(
         0.5,
         reading.outline.clipped,
         int((edges.within & ~edges.seen).sum()),
-        float(np.quantile(edges.width_px[edges.seen], BLURRED_SHARE)),
+        float(np.sort(edges.width_px[edges.seen])[int(BLURRED_SHARE * len(points_px))]),
     )
 
 
@@ -118,9 +120,10 @@ def on_picture(
     shape: ObjectShape,
     camera: PinholeCamera,
     reach_px: float,
+    exact: bool,
 ) -> Reading | None:
     """A reading fitted to the picture's own edges near it."""
-    outline = seen_on_picture(reading, yuyv, shape, camera, reach_px)
+    outline = seen_on_picture(reading, yuyv, shape, camera, reach_px, 0.0, exact)
     if outline is None:
         return None
     fit = _fit(outline, shape, camera, reading.fit.T_camera_object, 0.15)

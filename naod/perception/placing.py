@@ -1,0 +1,161 @@
+"""The place of an edge from the pixels about it, each predicted as the camera makes it.
+
+Lens, pixel and motion mix light; the level a pixel gets is a curve of the mixture; the chroma of a
+pair of pixels is a mean of levels. A profile across an edge is therefore not symmetric, and the
+level at the edge not half-way. So the edge is put where the predicted pairs of pixels fit the seen
+ones best.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+SHARES = 33
+PAIRS_MAX = 160
+ALONG_PX = 1.5
+"""How far along the edge pixels are taken."""
+
+ASIDE_PX = 1.5
+"""How far beyond the mixing they are taken across it."""
+
+MIXING_MAX_PX = 24.0
+SHIFT_MAX_PX = 2.0
+STEPS = 6
+DELTA_PX = 0.1
+WIDTH_MIN_PX = 0.9
+WIDTH_PRIOR = 1e-3
+"""Information that the width is as it seems from the profile, per score variance and px squared."""
+
+
+@njit(cache=True, nogil=True)
+def _score(scores: NDArray[np.float64], gap: float, width: float) -> float:
+    """Predicted score of a pixel whose middle lies `gap` outside the edge."""
+    share = 0.5 + gap / width
+    if share <= 0.0:
+        return 0.0
+    if share >= 1.0:
+        return 1.0
+    place = share * (SHARES - 1)
+    k = int(place)
+    return scores[k] + (place - k) * (scores[k + 1] - scores[k])
+
+
+@njit(cache=True, nogil=True)
+def _gather(
+    yuyv: NDArray[np.uint8],
+    x: float,
+    y: float,
+    nx: float,
+    ny: float,
+    across: float,
+    inner: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    pairs: NDArray[np.float64],
+) -> int:
+    """Pairs of pixels about (x, y): how far outside each pixel lies, and the score seen."""
+    height, half = yuyv.shape[0], yuyv.shape[1] // 2
+    zero = direction[0] * inner[0] + direction[1] * inner[1] + direction[2] * inner[2]
+    reach_x = across * abs(nx) + ALONG_PX * abs(ny) + 1.0
+    reach_y = across * abs(ny) + ALONG_PX * abs(nx)
+    count = 0
+    for i in range(max(math.ceil(y - reach_y), 0), min(int(y + reach_y) + 1, height)):
+        first = max(math.ceil((x - 0.5 - reach_x) / 2.0), 0)
+        for pair in range(first, min(int((x - 0.5 + reach_x) / 2.0) + 1, half)):
+            dx, dy = 2.0 * pair + 0.5 - x, i - y
+            if abs(dx * nx + dy * ny) > across or abs(dy * nx - dx * ny) > ALONG_PX + abs(ny):
+                continue
+            if count == pairs.shape[0]:
+                return count
+            j = 2 * pair
+            luma = 0.5 * (yuyv[i, j, 0] + float(yuyv[i, j + 1, 0]))
+            pairs[count, 0] = (dx - 0.5) * nx + dy * ny
+            pairs[count, 1] = (dx + 0.5) * nx + dy * ny
+            pairs[count, 2] = (
+                direction[0] * luma
+                + direction[1] * yuyv[i, j, 1]
+                + direction[2] * yuyv[i, j + 1, 1]
+                - zero
+            )
+            count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _pair_score(
+    scores: NDArray[np.float64], pair: NDArray[np.float64], shift: float, width: float
+) -> float:
+    a, b = pair[0] - shift, pair[1] - shift
+    return 0.5 * (_score(scores, a, width) + _score(scores, b, width))
+
+
+@njit(cache=True, nogil=True)
+def _improve(
+    scores: NDArray[np.float64],
+    pairs: NDArray[np.float64],
+    count: int,
+    shift: float,
+    width: float,
+    step: NDArray[np.float64],
+) -> float:
+    """Gauss-Newton step of shift and width into `step` (2,); returns the shift's information."""
+    a11 = a12 = b1 = b2 = 0.0
+    a22 = WIDTH_PRIOR
+    for k in range(count):
+        pair = pairs[k]
+        gap = pair[2] - _pair_score(scores, pair, shift, width)
+        by_shift = _pair_score(scores, pair, shift + DELTA_PX, width)
+        by_shift = (by_shift - _pair_score(scores, pair, shift - DELTA_PX, width)) / (2 * DELTA_PX)
+        by_width = _pair_score(scores, pair, shift, width + DELTA_PX)
+        by_width = (by_width - _pair_score(scores, pair, shift, width - DELTA_PX)) / (2 * DELTA_PX)
+        a11 += by_shift * by_shift
+        a12 += by_shift * by_width
+        a22 += by_width * by_width
+        b1 += by_shift * gap
+        b2 += by_width * gap
+    determinant = a11 * a22 - a12 * a12
+    if a11 < 1e-6 or determinant < 1e-12:
+        return 0.0
+    step[0] = (a22 * b1 - a12 * b2) / determinant
+    step[1] = (a11 * b2 - a12 * b1) / determinant
+    return determinant / a22
+
+
+@njit(cache=True, nogil=True)
+def place_edge(
+    yuyv: NDArray[np.uint8],
+    x: float,
+    y: float,
+    nx: float,
+    ny: float,
+    width: float,
+    inner: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    scores: NDArray[np.float64],
+    pairs: NDArray[np.float64],
+) -> tuple[float, float]:
+    """How far outside (x, y) the edge lies, px, and the information about it per score variance.
+
+    (nx, ny): unit normal outwards. width: px over which light mixes, roughly. inner, direction,
+    scores: as `encoding.mixture_scores` has them. pairs: (PAIRS_MAX, 3) scratch. Information 0: no
+    edge.
+    """
+    width = min(max(width, WIDTH_MIN_PX), MIXING_MAX_PX)
+    across = 0.5 * width + ASIDE_PX
+    count = _gather(yuyv, x, y, nx, ny, across, inner, direction, pairs)
+    step = np.zeros(2)
+    shift = information = 0.0
+    for _ in range(STEPS):
+        information = _improve(scores, pairs, count, shift, width, step)
+        if information == 0.0:
+            return 0.0, 0.0
+        shift += min(max(step[0], -1.0), 1.0)
+        width = min(max(width + min(max(step[1], -1.0), 1.0), WIDTH_MIN_PX), MIXING_MAX_PX)
+        if abs(shift) > SHIFT_MAX_PX + 0.25 * width:
+            return 0.0, 0.0
+        if abs(step[0]) < 0.002:
+            break
+    return shift, information
