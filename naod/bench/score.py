@@ -1,0 +1,122 @@
+"""How good an answer is: overlap of boxes and of masks, distance, what was lost."""
+
+from __future__ import annotations
+
+import statistics
+
+import cv2
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from naod.bench.frames import Frame
+from naod.bench.peers.peer import Seen
+from naod.geometry.camera import PinholeCamera
+from naod.perception.blob import blob_of_mask
+from naod.pose.locate import locate_mask
+from naod.pose.objects import ObjectShape
+
+LOST_BELOW = 0.1
+"""Box IoU below which whatever was found is something else."""
+
+
+class Score(msgspec.Struct, frozen=True):
+    """Of one picture. None where there is nothing to compare with, or nothing found.
+
+    `there`: the object was. `distance_error`: relative, of the pose that follows from the mask.
+    """
+
+    there: bool
+    found: bool
+    box_iou: float | None = None
+    mask_iou: float | None = None
+    distance_error: float | None = None
+
+
+class Summary(msgspec.Struct, frozen=True):
+    """Of a sequence: medians over pictures with the object, a lost one counting 0; shares."""
+
+    frames: int
+    box_iou: float | None
+    mask_iou: float | None
+    lost: float | None
+    distance_error: float | None
+    posed: float | None
+    found_absent: float | None
+
+
+def score(
+    frame: Frame, seen: Seen, shape: ObjectShape | None, camera: PinholeCamera | None
+) -> Score:
+    """One picture's. No pose where shape, camera or truth are missing."""
+    found = seen.corners_px is not None
+    if frame.mask is None:
+        return Score(there=False, found=found)
+    mask = main_region(full_size(seen, frame.mask.shape))
+    truth = blob_of_mask(frame.mask)
+    corners = seen.corners_px
+    box = 0.0
+    if corners is not None and truth is not None:
+        box = polygon_iou(corners, truth.corners_px)
+    distance = None
+    if found and shape is not None and camera is not None and frame.T_camera_object is not None:
+        pose = locate_mask(mask, shape, camera)
+        if pose is not None:
+            true_m = float(np.linalg.norm(frame.T_camera_object[:3, 3]))
+            distance = abs(float(np.linalg.norm(pose.T_camera_object[:3, 3])) / true_m - 1.0)
+    return Score(True, found, box, mask_iou(mask, frame.mask), distance)
+
+
+def summary(scores: list[Score]) -> Summary:
+    """Medians and shares; None where no picture could say."""
+    there = [s for s in scores if s.there]
+    absent = [s for s in scores if not s.there]
+    errors = [s.distance_error for s in there if s.distance_error is not None]
+    return Summary(
+        frames=len(scores),
+        box_iou=_median([s.box_iou or 0.0 for s in there]),
+        mask_iou=_median([s.mask_iou or 0.0 for s in there]),
+        lost=_share([(s.box_iou or 0.0) < LOST_BELOW for s in there]),
+        distance_error=_median(errors),
+        posed=_share([s.distance_error is not None for s in there]),
+        found_absent=_share([s.found for s in absent]),
+    )
+
+
+def full_size(seen: Seen, shape: tuple[int, ...]) -> NDArray[np.uint8]:
+    """The mask at the picture's size (H, W), each mask pixel a block."""
+    grain = round(seen.grain_px)
+    if grain == 1:
+        return seen.mask
+    large = np.repeat(np.repeat(seen.mask, grain, axis=0), grain, axis=1)
+    return np.ascontiguousarray(large[: shape[0], : shape[1]])
+
+
+def main_region(mask: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The largest region of touching pixels alone, (H, W) uint8."""
+    count, labels, table, _ = cv2.connectedComponentsWithStats((mask > 0).astype(np.uint8))
+    if count < 2:
+        return np.zeros_like(mask)
+    return np.asarray(labels == 1 + int(np.argmax(table[1:, cv2.CC_STAT_AREA])), dtype=np.uint8)
+
+
+def mask_iou(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:
+    """Shared pixels over all pixels of two masks of one size."""
+    together = np.count_nonzero((a > 0) | (b > 0))
+    return np.count_nonzero((a > 0) & (b > 0)) / together if together else 0.0
+
+
+def polygon_iou(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    """Of two convex quadrilaterals (4, 2)."""
+    first, second = a.astype(np.float32), b.astype(np.float32)
+    shared = float(cv2.intersectConvexConvex(first, second)[0])
+    both = float(cv2.contourArea(first) + cv2.contourArea(second)) - shared
+    return shared / both if both > 0.0 else 0.0
+
+
+def _median(values: list[float]) -> float | None:
+    return statistics.median(values) if values else None
+
+
+def _share(flags: list[bool]) -> float | None:
+    return sum(flags) / len(flags) if flags else None
