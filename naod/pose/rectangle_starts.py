@@ -14,6 +14,8 @@ from naod.pose.objects import Rectangle
 TURNS_RAD = ((0.0, 0.0), (0.6, 0.0), (-0.6, 0.0), (0.0, 0.6), (0.0, -0.6))
 """Of a clipped board about its x and y."""
 
+HIDDEN_SLACK = 0.15
+
 QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
@@ -63,16 +65,35 @@ def rectangle_starts(shape: Rectangle, corners: NDArray[np.float64]) -> list[NDA
 
 
 def clipped_rectangle_starts(shape: Rectangle, box: Box) -> list[NDArray[np.float64]]:
-    """Either side of the box may be the width; fixed tilts, since three edges show little of it."""
+    """Fixed tilts, since three edges show little of it.
+
+    Which side of the box is the width three edges cannot say: the less of the board would have to
+    be out of sight, the likelier.
+    """
+    ways = [(_hidden(shape, seen), seen) for seen in (box, box.turned())]
+    least = min(hidden for hidden, _ in ways)
     found = []
-    for seen in (box, box.turned()):
-        # what is cut off or tilted looks small, so the nearer reading is the better one
-        distance = min(shape.width_m / seen.across, shape.height_m / seen.along)
+    for hidden, seen in ways:
+        if hidden > least + HIDDEN_SLACK:
+            continue
+        distance = _distance(shape, seen)
         middle = seen.centre(shape.width_m / distance, shape.height_m / distance)
         centre = np.append(middle, 1.0) * distance
         R = facing(np.append(seen.up, 0.0), centre)
         found += [pose(R @ _turns(*turns), centre) for turns in TURNS_RAD]
     return found
+
+
+def _distance(shape: Rectangle, box: Box) -> float:
+    # what is cut off or tilted looks small, so the nearer reading is the better one
+    return min(shape.width_m / box.across, shape.height_m / box.along)
+
+
+def _hidden(shape: Rectangle, box: Box) -> float:
+    """Share of the width or height that a box of a board seen straight does not show."""
+    distance = _distance(shape, box)
+    across, along = box.across * distance / shape.width_m, box.along * distance / shape.height_m
+    return 1.0 - min(across, along)
 
 
 def _turns(about_x: float, about_y: float) -> NDArray[np.float64]:

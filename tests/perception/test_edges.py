@@ -52,20 +52,19 @@ def errors(inside, outside, angle, mixing_px=0.7, noise=0.0, reach=5.0, seed=0):
 )
 def test_a_sharp_edge_is_placed_without_bias(inside, outside, angle):
     found = errors(inside, outside, angle)
-    allowed = 0.13 if inside is YELLOW else 0.1
-    assert abs(found.mean()) < allowed
-    assert found.std() < 0.25
+    assert abs(found.mean()) < 0.06
+    assert found.std() < 0.12
 
 
 @pytest.mark.parametrize("mixing_px", [4.0, 8.0])
 def test_blur_widens_an_edge_without_moving_it(mixing_px):
     found = errors(RED, WALL, 0.3, mixing_px, reach=10.0)
-    assert abs(found.mean()) < 0.08
+    assert abs(found.mean()) < 0.06
 
 
 def test_noise_is_stated():
     found = errors(RED, WALL, 0.6, 2.0, noise=4.0)
-    assert abs(found.mean()) < 0.1
+    assert abs(found.mean()) < 0.06
     assert found.std() < 0.2
 
 
