@@ -8,7 +8,8 @@ from pathlib import Path
 from naod.cli.output import Progress, print_json
 from naod.cli.pictures import find_files, read_pictures
 from naod.errors import InputError
-from naod.perception.colour_model import Region, learn, save_model
+from naod.perception.colour_model import Region, save_model
+from naod.perception.learning import DEFAULT_KIND, KINDS, learn_model
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,6 +22,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="part of each picture that shows only the object: left, top, width, height in pixels",
     )
     parser.add_argument("--out", required=True, type=Path, metavar="MODEL.toml")
+    parser.add_argument(
+        "--model-kind",
+        choices=KINDS,
+        default=DEFAULT_KIND,
+        help="one Gaussian, or a table that knows blur and surroundings (default: %(default)s)",
+    )
     parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
 
 
@@ -45,12 +52,13 @@ def run(args: argparse.Namespace) -> int:
         frames.append(picture.yuyv)
         progress.tick(picture.stem)
     progress.done()
-    model = learn(frames, region)
+    model = learn_model(frames, region, args.model_kind)
     save_model(args.out, model)
     if args.json:
         print_json(
             {
                 "model": str(args.out),
+                "kind": args.model_kind,
                 "frames": len(frames),
                 "pixels": len(frames) * region.width * region.height,
                 "mean": model.mean,

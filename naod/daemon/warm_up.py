@@ -15,7 +15,8 @@ from hal.protocols import Robot
 from hal.types import BodyState, Frame
 from naod.geometry.camera import PinholeCamera
 from naod.loop.equipment import Equipment, Sighting
-from naod.perception.colour_model import Region, learn
+from naod.perception.colour_model import Region
+from naod.perception.learning import learn_model
 from naod.pose.objects import Cylinder, ObjectShape
 
 log = logging.getLogger(__name__)
@@ -50,7 +51,7 @@ def rehearse(equipment: Equipment, body: BodyState, writeable: bool = False) -> 
     yuyv = _painted(camera.width, camera.height, region)
     yuyv.flags.writeable = writeable
     frame = Frame(body.stamp_ns, yuyv, equipment.camera_name, 0.01, 0)
-    return equipment.sight(learn([yuyv, yuyv], region), frame, body)
+    return equipment.sight(learn_model([yuyv, yuyv], region), frame, body)
 
 
 def _silhouette(shape: ObjectShape, camera: PinholeCamera) -> Region:

@@ -13,7 +13,8 @@ from naod.loop.equipment import Equipment
 from naod.loop.outbox import Outbox
 from naod.loop.state import Learning, LoopState
 from naod.loop.types import Label
-from naod.perception.colour_model import Region, learn
+from naod.perception.colour_model import Region
+from naod.perception.learning import learn_model
 
 FRAMES = 10
 """The paper's n."""
@@ -49,7 +50,7 @@ def gather(state: LoopState, frame: Frame, out: Outbox) -> LoopState:
     region = learning.region
     try:
         box = Region(region.x, region.y, region.width, region.height)
-        model = learn([f.yuyv for f in frames], box)
+        model = learn_model([f.yuyv for f in frames], box)
     except InputError as error:
         out.refuse(learning.ticket, "bad_region", str(error))
         return replace(state, learning=None, mode="idle", phase="idle")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.components import (
@@ -44,13 +45,37 @@ class Blob:
 
 
 def find_blob(segmentation: Segmentation, pixels_min: int = PIXELS_MIN) -> Blob | None:
-    """The largest region of touching pixels, or None if it has fewer than `pixels_min`."""
+    """The region of touching pixels that has most of the object's colour.
+
+    None if none has `pixels_min`. Without the segmentation's differences it is the largest one.
+    """
     labels, table = components(segmentation.mask)
     if not len(table) or table[:, AREA].max() < pixels_min:
         return None
+    weights = table[:, AREA].astype(np.float64)
+    if segmentation.differences is not None and len(table) > 1:
+        weights = evidence(labels, segmentation.differences, len(table))
+        weights[table[:, AREA] < pixels_min] = -1.0
     wanted = np.zeros(len(table) + 1, dtype=np.bool_)
-    wanted[1 + int(np.argmax(table[:, AREA]))] = True
+    wanted[1 + int(np.argmax(weights))] = True
     return blob_of(labels, table, wanted, segmentation.scale)
+
+
+@njit(cache=True, nogil=True)
+def evidence(
+    labels: NDArray[np.int32], differences: NDArray[np.int32], count: int
+) -> NDArray[np.float64]:
+    """(count,) float64: steps by which the pixels of each region are likelier object.
+
+    A pixel that is likelier background counts nothing: the field closed a hole there.
+    """
+    sums = np.zeros(count, dtype=np.float64)
+    for i in range(labels.shape[0]):
+        for j in range(labels.shape[1]):
+            label = labels[i, j]
+            if label > 0 and differences[i, j] < 0:
+                sums[label - 1] -= differences[i, j]
+    return sums
 
 
 def blob_of_mask(mask: NDArray[np.uint8], pixels_min: int = PIXELS_MIN) -> Blob | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 import numpy as np
@@ -11,7 +12,8 @@ from numpy.typing import NDArray
 
 from hal.yuyv import yuv_from_yuyv
 from naod.errors import InputError
-from naod.files import read_toml, write_toml
+from naod.files import parse_toml, read_text, write_toml
+from naod.perception.colour_table import unpacked
 
 Triple = tuple[float, float, float]
 
@@ -31,11 +33,28 @@ class Region(msgspec.Struct, frozen=True):
     height: int
 
 
-class ColourModel(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class ColourModel(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    forbid_unknown_fields=True,
+    tag_field="kind",
+    tag="gaussian",
+):
     """`mean` of Y, U, V in 8-bit levels; `covariance` in levels squared, 3x3, full rank."""
 
     mean: Triple
     covariance: tuple[Triple, Triple, Triple]
+
+
+class ColourTable(ColourModel, frozen=True, kw_only=True, tag="table"):
+    """The Gaussian, and beside it the table of `naod.perception.colour_table` as its text."""
+
+    table: str
+
+
+class _Kind(msgspec.Struct, frozen=True):
+    kind: Literal["gaussian", "table"] = "gaussian"
 
 
 def learn(frames: Sequence[NDArray[np.uint8]], region: Region) -> ColourModel:
@@ -69,8 +88,13 @@ def model_of(mean: NDArray[np.float64], covariance: NDArray[np.float64]) -> Colo
 
 
 def load_model(path: Path) -> ColourModel:
-    """Read MODEL.toml. Raises InputError that names the file and what is wrong."""
-    model = read_toml(path, ColourModel)
+    """Read MODEL.toml; one without `kind` is a Gaussian.
+
+    Raises InputError that names the file and what is wrong.
+    """
+    text = read_text(path)
+    table = parse_toml(text, _Kind, str(path)).kind == "table"
+    model: ColourModel = parse_toml(text, ColourTable if table else ColourModel, str(path))
     values = np.array([model.mean, *model.covariance])
     covariance = values[1:]
     if not np.isfinite(values).all():
@@ -79,6 +103,11 @@ def load_model(path: Path) -> ColourModel:
         raise InputError(f"{path}: covariance is not symmetric")
     if np.linalg.eigvalsh(covariance)[0] <= 0.0:
         raise InputError(f"{path}: covariance is not positive definite")
+    if isinstance(model, ColourTable):
+        try:
+            unpacked(model.table)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
     return model
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.colour_model import ColourModel
+from naod.perception.colour_model import ColourModel, ColourTable
+from naod.perception.colour_table import BINS, cell_colours, filled, look_up, unpacked
 
 STEPS = 256
 """Integer steps per nat."""
@@ -26,7 +27,8 @@ class Singletons:
     """Energy of one pixel under a colour model against a constant background.
 
     `light_std` widens the Gaussian along the line of colours that one surface has in more or less
-    light, Y : U - 128 : V - 128 staying in proportion.
+    light, Y : U - 128 : V - 128 staying in proportion. A colour table decides by itself wherever it
+    has learnt something; `table` is (CELLS,) int16, empty for a Gaussian alone.
     """
 
     def __init__(
@@ -39,9 +41,17 @@ class Singletons:
         self.mean = np.array(model.mean, dtype=np.float32)
         # half the precision: x' (S^-1 / 2) x is k / 2
         self.half_precision = (0.5 * np.linalg.inv(covariance)).astype(np.float32)
+        self.table: NDArray[np.int16] = np.zeros(0, dtype=np.int16)
+        if isinstance(model, ColourTable):
+            printed = np.empty((BINS * BINS, BINS), dtype=np.int32)
+            self.differences(cell_colours(), printed)
+            self.table = filled(unpacked(model.table), printed)
 
     def differences(self, yuv: NDArray[np.float32], out: NDArray[np.int32]) -> None:
         """Of each pixel of (h, w, 3) into (h, w) int32: negative where the object is likelier."""
+        if self.table.size:
+            look_up(yuv, self.table, out)
+            return
         _differences(yuv, self.mean, self.half_precision, np.float32(self.offset), out)
 
 

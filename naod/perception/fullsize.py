@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.colour_table import looked_up
 from naod.perception.energy import pixel_difference
 from naod.perception.icm import best_label
 from naod.perception.segmenter import Segmentation, Segmenter
@@ -38,20 +39,19 @@ def _difference_in_band(
     mean: NDArray[np.float32],
     half_precision: NDArray[np.float32],
     offset: np.float32,
+    table: NDArray[np.int16],
     out: NDArray[np.int32],
 ) -> None:
     for y in range(band.shape[0]):
         for x in range(band.shape[1]):
             if band[y, x]:
                 left = x - x % 2
-                out[y, x] = pixel_difference(
-                    np.float32(yuyv[y, x, 0]),
-                    np.float32(yuyv[y, left, 1]),
-                    np.float32(yuyv[y, left + 1, 1]),
-                    mean,
-                    half_precision,
-                    offset,
-                )
+                luma, u = np.float32(yuyv[y, x, 0]), np.float32(yuyv[y, left, 1])
+                v = np.float32(yuyv[y, left + 1, 1])
+                if table.size:
+                    out[y, x] = looked_up(luma, u, v, table)
+                else:
+                    out[y, x] = pixel_difference(luma, u, v, mean, half_precision, offset)
 
 
 @njit(cache=True, nogil=True)
@@ -96,6 +96,7 @@ def full_mask(
         s.mean,
         s.half_precision,
         np.float32(s.offset),
+        s.table,
         differences,
     )
     _descend_in_band(differences, band, labels, segmenter.beta_steps, SWEEPS)

@@ -23,6 +23,7 @@ class Segmentation:
     `scale`: full pixels per reduced pixel, in both directions. `size`: full width and height.
     `iterations`: sweeps of ICM, or waves of the exact cut, 0 where nothing was left to cut.
     `settled`: the energy came to rest within the sweeps allowed; the exact minimum always is.
+    `differences`: (h, w) object's singleton energy less the background's, in steps.
     """
 
     mask: NDArray[np.uint8]
@@ -31,6 +32,7 @@ class Segmentation:
     scale: float
     size: tuple[int, int]
     settled: bool
+    differences: NDArray[np.int32] | None = None
 
 
 class Segmenter:
@@ -71,6 +73,7 @@ class Segmenter:
             scale=float(self.reduction.block),
             size=self.reduction.size,
             settled=settled,
+            differences=self._differences.copy(),
         )
 
     def _minimise(self) -> tuple[int, int, bool]:

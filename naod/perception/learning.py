@@ -1,0 +1,25 @@
+"""The colour model of the kind asked for, from frames in which a person marked a region."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from naod.perception.colour_model import ColourModel, Region, learn
+from naod.perception.colour_table_learning import learn_table
+
+ModelKind = Literal["gaussian", "table"]
+KINDS: tuple[ModelKind, ...] = ("gaussian", "table")
+DEFAULT_KIND: ModelKind = "gaussian"
+"""The table is better where there is blur; learnt from a patch of one colour of a many-coloured
+object it is worse."""
+
+
+def learn_model(
+    frames: Sequence[NDArray[np.uint8]], region: Region, kind: ModelKind = DEFAULT_KIND
+) -> ColourModel:
+    """From YUYV frames (H, W, 2) uint8. Raises InputError as `colour_model.learn` does."""
+    return learn_table(frames, region) if kind == "table" else learn(frames, region)
