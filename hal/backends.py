@@ -54,7 +54,9 @@ def open_studio(backend: str, options: OpenOptions) -> Studio:
 
 def _named(table: Mapping[str, str], backend: str) -> Callable[[OpenOptions], object]:
     if backend not in table:
-        raise BackendError(f"unknown backend {backend!r}; known: {', '.join(sorted(table))}")
+        raise BackendError(
+            f"there is no backend {backend!r}; there are: {', '.join(sorted(table))}"
+        )
     module_name, _, function = table[backend].partition(":")
     try:
         module = importlib.import_module(module_name)

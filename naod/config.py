@@ -129,12 +129,12 @@ class ApproachConfig(_Section, frozen=True):
 
 
 class WalkConfig(_Section, frozen=True):
-    """Limits that the walk server holds, whoever asks."""
+    """Limits that the walk server holds, whoever asks; none beyond what a NAO has ever walked."""
 
-    speed_max_m_s: Positive = 0.12
-    turn_max_rad_s: Positive = 0.6
-    step_max_m: Positive = 0.40
-    step_turn_max_rad: Positive = 1.6
+    speed_max_m_s: Annotated[float, Meta(gt=0.0, le=0.4)] = 0.12
+    turn_max_rad_s: Annotated[float, Meta(gt=0.0, le=2.6)] = 0.6
+    step_max_m: Annotated[float, Meta(gt=0.0, le=2.0)] = 0.40
+    step_turn_max_rad: Annotated[float, Meta(gt=0.0, le=3.1416)] = 1.6
 
 
 class LogConfig(_Section, frozen=True):

@@ -119,7 +119,11 @@ def _explain(text: str, message: str, source: str) -> str:
     unknown = re.search(r"unknown field `([^`]+)`", reason)
     if unknown:
         keys.append(unknown.group(1))
-    dotted = ".".join(keys) or "the file"
+    missing = re.search(r"missing required field `([^`]+)`", reason)
+    if missing:
+        dotted, reason = ".".join([*keys, missing.group(1)]), "is missing"
+    else:
+        dotted = ".".join(keys) or "the file"
     line = _line_of(text, keys)
     place = f"{source}:{line}" if line else source
     return f"{place}: {dotted}: {reason}"

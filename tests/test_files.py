@@ -22,7 +22,7 @@ from naod.geometry.camera import PinholeCamera
         ("[robot]\nstart = [1, 2]\n", Scenario, "f.toml:2: robot.start"),
         ("[scene]\nlight = -1.0\n", Scenario, "f.toml:2: scene.light"),
         ("[[distractor]]\nkind = 'cube'\n", Scenario, "f.toml:2: distractor.kind"),
-        ("width = 3\n", PinholeCamera, "f.toml: the file: "),
+        ("width = 3\n", PinholeCamera, "f.toml: height: is missing"),
         ("[robot\n", DaemonConfig, "f.toml: not valid TOML"),
         ("[gaze]\ngain = nan\n", DaemonConfig, "gaze.gain"),
         ("[walk]\nspeed_max_m_s = inf\n", DaemonConfig, "f.toml:2: walk.speed_max_m_s: is not a"),

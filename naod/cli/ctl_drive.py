@@ -7,17 +7,20 @@ import math
 import os
 import socket
 import time
+from typing import Any
 
 from naod.bus import keys
 from naod.bus.client import Client
 from naod.cli.ctl_verbs import open_for, seconds_of
 from naod.cli.output import Progress, print_json
 from naod.errors import InputError
+from naod.geometry.transforms import inverse, planar, yaw_of
 from naod.messages import HeadCommand, WalkCommand
 
 RENEW_S = 0.1
 WALK_TTL_MS = 300
 HEAD_TTL_MS = 1000
+STANDING_S = 2.0
 
 
 def walk(args: argparse.Namespace) -> int:
@@ -26,13 +29,14 @@ def walk(args: argparse.Namespace) -> int:
     for name in ("vx", "vy", "wz"):
         _finite(name.upper(), getattr(args, name))
     with open_for(args) as client:
+        before = client.call("status")["walk"]["odometry"]
         _drive(client, args, seconds)
-        state = client.call("status")["walk"]
+        state = _standing(client)
     if args.json:
         print_json({"ok": True, "walk": state})
     else:
-        x, y, yaw = state["odometry"]
-        print(f"stopped; odometry {x:+.3f} m, {y:+.3f} m, {math.degrees(yaw):+.1f} deg")
+        x, y, turn = _between(before, state["odometry"])
+        print(f"stopped after {x:+.3f} m, {y:+.3f} m, {math.degrees(turn):+.1f} deg")
     return 0
 
 
@@ -88,6 +92,22 @@ def _drive(client: Client, args: argparse.Namespace, seconds: float) -> None:
     finally:
         progress.done()
         client.call("walk", command("stop"))
+
+
+def _standing(client: Client) -> dict[str, Any]:
+    """The walk's state once the robot stands, or after the time in which it has to."""
+    deadline = time.monotonic() + STANDING_S
+    while True:
+        state: dict[str, Any] = client.call("status")["walk"]
+        if not state["moving"] or time.monotonic() > deadline:
+            return state
+        time.sleep(RENEW_S)
+
+
+def _between(before: list[float], after: list[float]) -> tuple[float, float, float]:
+    """From one odometry pose to another, as seen from the first."""
+    T = inverse(planar(*before)) @ planar(*after)
+    return float(T[0, 3]), float(T[1, 3]), yaw_of(T)
 
 
 def _source() -> str:

@@ -77,7 +77,10 @@ def picture(args: argparse.Namespace) -> int:
 def label(args: argparse.Namespace) -> int:
     """Learn the colour."""
     call = _region(args.region)
-    return _show(args, _asked(args, "label", call, LEARNING_S), "colour learnt and kept")
+    answer = _asked(args, "label", call, LEARNING_S)
+    doubt = answer.get("message")
+    text = "colour learnt and kept"
+    return _show(args, answer, f"{text}, but {doubt}" if doubt else text)
 
 
 def teach(args: argparse.Namespace) -> int:

@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 import queue
+import sys
 import time
 from functools import partial
 from typing import Any
@@ -78,7 +79,13 @@ def start(args: argparse.Namespace) -> int:
             print_json(answer) if args.json else print(f"on the way to {args.goal}")
             return 0
         limit_s = APPROACH_S if args.seconds is None else seconds_of(args)
-        phase, why = _see_through(follower, args.goal, time.monotonic() + limit_s)
+        try:
+            phase, why = _see_through(follower, args.goal, time.monotonic() + limit_s)
+        except KeyboardInterrupt:
+            # whoever waits and then does not want to is taken to mean the robot
+            client.call("stop")
+            print("stopped", file=sys.stderr)
+            raise
     if args.json:
         print_json({"ok": True, "goal": args.goal, "phase": phase, "message": why})
     else:

@@ -47,7 +47,8 @@ def run(args: argparse.Namespace) -> int:
         print(f"figures, frames, film and recording: {folder}/")
     reached = outcome.summary.converged and outcome.summary.final_error.reached
     if not reached:
-        print("naod demo: the pose shown was not reached", file=sys.stderr)
+        why = f": {outcome.reason}" if outcome.reason else ""
+        print(f"naod demo: the pose shown was not reached{why}", file=sys.stderr)
     return 0 if reached else 1
 
 

@@ -34,21 +34,35 @@ class _Parser(argparse.ArgumentParser):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; returns its exit status."""
     words = list(sys.argv[1:] if argv is None else argv)
-    parser = _build(words[0] if words else None)
-    args = parser.parse_args(words)
+    command = words[0] if words and words[0] in COMMANDS else ""
     try:
-        return int(args.run(args))
+        args = _build(command).parse_args(words)
+        status = int(args.run(args))
+        sys.stdout.flush()
     except (NaodError, HalError) as error:
-        print(f"naod {args.command}: {error}", file=sys.stderr)
-        return 2
+        return _complain(command, str(error))
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 0
+    except OSError as error:
+        _drop_output()
+        return _complain(command, f"{error.filename or 'output'}: {error.strerror}")
     except KeyboardInterrupt:
         return 130
+    return status
 
 
-def _build(wanted: str | None) -> argparse.ArgumentParser:
+def _complain(command: str, text: str) -> int:
+    print(f"naod {command}: {text}" if command else f"naod: {text}", file=sys.stderr)
+    return 2
+
+
+def _drop_output() -> None:
+    """What is left in the buffer has nowhere to go; at exit it must not raise again."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _build(wanted: str) -> argparse.ArgumentParser:
     """The parser; only the wanted command's module is imported, so that `--help` is quick."""
     parser = _Parser(prog="naod", description="Finds an object by colour and walks a NAO to it.")
     parser.add_argument("--version", action="version", version=f"naod {__version__}")

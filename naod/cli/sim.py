@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 import msgspec
 
+from hal.errors import ScenarioError
 from naod.cli.demo import make_folder
 from naod.cli.output import Progress, print_json
 from naod.config import DaemonConfig
@@ -39,18 +41,23 @@ def run(args: argparse.Namespace) -> int:
     document = msgspec.to_builtins(outcome.summary)
     if folder is not None:
         text = msgspec.json.format(msgspec.json.encode(document), indent=1)
-        write_whole(folder / "summary.json", text)
+        write_whole(folder / "summary.json", text + b"\n")
     if args.json:
         print_json(document)
     else:
         print(outcome_table(f"{args.scenario.name}, seed {args.seed}", outcome))
+    if outcome.reason:
+        print(f"naod sim: {outcome.reason}", file=sys.stderr)
     return 0 if outcome.summary.converged else 1
 
 
 def _simulate(path: Path, seed: int) -> Outcome:
     scenario = load_scenario(path)
     config = DaemonConfig()
-    lockstep = open_lockstep(config, scenario, path.resolve().parent, seed, compare_paper=True)
+    try:
+        lockstep = open_lockstep(config, scenario, path.resolve().parent, seed, compare_paper=True)
+    except ScenarioError as error:
+        raise InputError(f"{path}: {error}") from None
     try:
         progress = Progress(path.name)
         lockstep.listeners.append(lambda tick: progress.tick(tick.commands.state.phase))

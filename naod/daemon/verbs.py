@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+
 from naod import __version__
 from naod.approach.goal import Goal, check_name
 from naod.bus import keys
@@ -24,6 +26,8 @@ from naod.messages import (
     WalkCommand,
 )
 from naod.walk_server.server import WalkServer
+
+log = logging.getLogger(__name__)
 
 
 class Verbs:
@@ -124,6 +128,7 @@ class Verbs:
         self._ask(Stop(), answer)
 
     def _estop(self, _call: NoArguments, answer: Answer) -> None:
+        log.warning("estop")
         # the approach is over as well: after the release nothing goes on by itself
         self._ask(Stop(), None)
         try:
@@ -139,6 +144,7 @@ class Verbs:
         except InputError as error:
             answer.error("not_released", str(error))
             return
+        log.warning("estop released")
         answer.ok()
 
     def _walk(self, call: WalkCommand, answer: Answer) -> None:

@@ -66,12 +66,13 @@ class Journal:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """An approach and everything that was noted of it."""
+    """An approach and everything that was noted of it; `reason` says why it was not reached."""
 
     summary: Summary
     journal: Journal
     shown: Truth
     goal: Goal
+    reason: str
 
 
 class Experiment:
@@ -127,7 +128,12 @@ class Experiment:
             wall_s=time.perf_counter() - wall,
             seed=self.seed,
         )
-        return Outcome(summary, journal, shown, run.state.goals[GOAL])
+        reason = "" if summary.converged else self._reason()
+        return Outcome(summary, journal, shown, run.state.goals[GOAL], reason)
+
+    def _reason(self) -> str:
+        failed = [event.message for event in self.run.events if event.kind == "failed"]
+        return failed[-1] if failed else "the time is over"
 
     def _come_to_rest(self) -> None:
         self.run.robot.walk.stop()

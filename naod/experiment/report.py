@@ -73,4 +73,4 @@ def write_report(
     for number, (frame, sighting) in enumerate(outcome.journal.sights):
         drawn = annotated(frame, sighting, run.equipment.camera)
         Image.fromarray(drawn).save(frames / f"look_{number:02d}.png")
-    write_whole(folder / "summary.json", summary)
+    write_whole(folder / "summary.json", summary + b"\n")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from types import MappingProxyType
+
+import numpy as np
 
 from hal.types import Frame
 from naod.approach.displacement import goal_from, shape_kind
@@ -13,8 +16,11 @@ from naod.loop.equipment import Equipment
 from naod.loop.outbox import Outbox
 from naod.loop.state import Learning, LoopState
 from naod.loop.types import Label
-from naod.perception.colour_model import Region
+from naod.perception.colour_model import ColourModel, Region
 from naod.perception.learning import learn_model
+
+MIXED_LEVELS = 25.0
+"""A surface of one colour in one light spreads less, shading included."""
 
 FRAMES = 10
 """The paper's n."""
@@ -34,13 +40,13 @@ def begin_learning(
         out.refuse(ticket, "bad_region", f"{text}{camera.width}x{camera.height} picture")
         return state
     return replace(
-        state, mode="track", phase="learning", model=None, learning=Learning(ticket, region),
+        state, mode="track", phase="learning", model=None, learning=Learning(ticket, region, state),
         target=None, looks=(), goal=None, error=None,
     )  # fmt: skip
 
 
 def gather(state: LoopState, frame: Frame, out: Outbox) -> LoopState:
-    """Add a frame; learn when there are enough. The old model stays gone if learning fails."""
+    """Add a frame; learn when there are enough. If that fails all is as it was before."""
     learning = state.learning
     if learning is None:
         return state
@@ -53,11 +59,25 @@ def gather(state: LoopState, frame: Frame, out: Outbox) -> LoopState:
         model = learn_model([f.yuyv for f in frames], box)
     except InputError as error:
         out.refuse(learning.ticket, "bad_region", str(error))
-        return replace(state, learning=None, mode="idle", phase="idle")
+        before = learning.before
+        return replace(
+            state, learning=None, model=before.model, mode=before.mode, phase=before.phase
+        )
     out.keep_model = model
     out.event("labelled", "learnt the object's colour")
-    out.done(learning.ticket)
+    out.done(learning.ticket, _doubt(model))
     return replace(state, learning=None, model=model, phase="centre", search_from_ns=None)
+
+
+def _doubt(model: ColourModel) -> str:
+    """What a person should know of a colour that is hardly one."""
+    spread = math.sqrt(float(np.linalg.eigvalsh(np.array(model.covariance))[-1]))
+    if spread <= MIXED_LEVELS:
+        return ""
+    return (
+        f"the region holds more than one colour (spread {spread:.0f} of 255 levels); "
+        "mark less if the object is not found"
+    )
 
 
 def show_goal(equipment: Equipment, state: LoopState, out: Outbox) -> LoopState:

@@ -30,10 +30,11 @@ Phase = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Learning:
-    """A colour being learnt: who asked, which region, the frames so far."""
+    """A colour being learnt: who asked, which region, the frames so far, what was known before."""
 
     ticket: int
     region: Label
+    before: LoopState
     frames: tuple[Frame, ...] = ()
 
 

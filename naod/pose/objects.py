@@ -11,7 +11,7 @@ from msgspec import Meta
 from hal.scenario import ThingSection
 from naod.files import read_toml
 
-Positive = Annotated[float, Meta(gt=0.0)]
+Positive = Annotated[float, Meta(gt=0.0, le=100.0)]
 
 
 class Cylinder(

@@ -258,3 +258,12 @@ def test_the_step_is_a_function_of_its_arguments():
         bench.tick(Start("desk"))
         traces.append([bench.tick() for _ in range(100)])
     assert traces[0] == traces[1]
+
+
+def test_a_colour_that_cannot_be_learnt_leaves_the_one_before():
+    """A rejected label used to erase the colour that was known."""
+    bench = Bench()
+    bench.tick(Label(100, 100, 50, 50))
+    bench.until(lambda c: c.replies)
+    assert bench.state.model is MODEL
+    assert bench.state.mode == "idle"
