@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import cv2
 import msgspec
@@ -16,6 +17,8 @@ from hal.scenario import Scenario, SceneSection, ThingSection
 from hal.simulation import Studio
 from naod.perception.blob import blob_of_mask
 from naod.perception.colour_model import Region
+
+Things = Literal["can", "board"]
 
 FAR_M, NEAR_M = {"can": 1.3, "board": 1.8}, {"can": 0.5, "board": 0.8}
 EYE_M = 0.47
@@ -39,17 +42,21 @@ class RoomLook(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class WalkFrame:
-    """A picture (H, W, 2) YUYV and the object's true oriented box (4, 2), None when not there."""
+    """A picture (H, W, 2) YUYV and the object's true oriented box (4, 2), None when not there.
+
+    `cut_off`: there is no box because the object is not wholly in the picture.
+    """
 
     yuyv: NDArray[np.uint8]
     corners_px: NDArray[np.float64] | None
+    cut_off: bool = False
 
 
 class Walks:
     """One object in one room. `folder` is where a wall's picture is made."""
 
     def __init__(
-        self, thing: str, look: RoomLook, folder: Path, size: tuple[int, int] = (640, 480)
+        self, thing: Things, look: RoomLook, folder: Path, size: tuple[int, int] = (640, 480)
     ) -> None:
         self.thing, self.look, self.size = thing, look, size
         options = OpenOptions(
@@ -97,8 +104,9 @@ class Walks:
         if self.look.absent:
             return WalkFrame(frame, None)
         blob = blob_of_mask(self._studio.mask_at(poses[0], poses), SEEN_PIXELS_MIN)
-        whole = blob is not None and not blob.clipped
-        return WalkFrame(frame, blob.corners_px if blob is not None and whole else None)
+        if blob is None or blob.clipped:
+            return WalkFrame(frame, None, cut_off=True)
+        return WalkFrame(frame, blob.corners_px)
 
     def _eye(self, way_m: float, t_s: float, sweep: bool) -> NDArray[np.float64]:
         """T_world_camera before the object, `way_m` away, at a moment of the gait."""
@@ -132,7 +140,7 @@ def _head(gait: float, t_s: float) -> NDArray[np.float64]:
     return R
 
 
-def _scenario(thing: str, look: RoomLook, folder: Path) -> Scenario:
+def _scenario(thing: Things, look: RoomLook, folder: Path) -> Scenario:
     """A speck where the object would be, when there is to be none: the table stays."""
     speck = 1e-4 if look.absent else None
     if thing == "can":

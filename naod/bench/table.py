@@ -16,6 +16,7 @@ from naod.errors import InputError
 BENCHES: dict[str, str] = {
     "perception": "naod.bench.perception",
     "approach": "naod.bench.approach",
+    "colours": "naod.bench.colours",
 }
 
 QUICK = ("perception",)
