@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hal.backends import OpenOptions, open_studio
 from hal.scenario import Scenario, SceneSection, ThingSection
 from hal.simulation import Studio
+from naod.geometry.camera import nominal_camera
 from naod.perception.colour_model import Region
 
 PERIOD_S = 1.0 / 15.0
@@ -40,12 +41,14 @@ class Frame:
     """A picture and what it shows.
 
     yuyv: (H, W, 2) uint8. mask: (H, W) uint8, non-zero = object, None when it is not there.
-    T_camera_object: (4, 4) in the middle of the exposure, None where nobody knows.
+    T_camera_object: (4, 4) in the middle of the exposure, None where nobody knows. motion_px: of
+    the object through the picture during the exposure, right and down.
     """
 
     yuyv: NDArray[np.uint8]
     mask: NDArray[np.uint8] | None
     T_camera_object: NDArray[np.float64] | None = None
+    motion_px: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +80,7 @@ class Walk:
     def __init__(self, settings: WalkSettings) -> None:
         self.settings = settings
         self._studio = _studio(settings, ThingSection())
+        self._camera = nominal_camera("v6", *settings.size)
 
     def taken(self, name: str, exposure_s: float) -> Sequence:
         """The whole of it. Raises BackendError where no simulation is installed."""
@@ -96,7 +100,8 @@ class Walk:
         frames = []
         for n in range(1, self.settings.count + 1):
             poses = self._poses(n, exposure_s)
-            frames.append(Frame(empty.frame_at(poses[0], poses, self._noise(n)), None))
+            yuyv = empty.frame_at(poses[0], poses, self._noise(n))
+            frames.append(Frame(yuyv, None, None, self._motion(poses)))
         return Sequence(name, seen.shown, seen.region, tuple(frames))
 
     def _frame(self, n: int, exposure_s: float) -> Frame:
@@ -105,9 +110,13 @@ class Walk:
         T_world_camera = poses[MOMENTS // 2]
         T = np.linalg.inv(T_world_camera) @ self._studio.T_world_object
         yuyv = self._studio.frame_at(poses[0], poses, self._noise(n))
-        return Frame(
-            yuyv, mask if np.count_nonzero(mask) >= SEEN_MIN_SHARE * mask.size else None, T
-        )
+        seen = np.count_nonzero(mask) >= SEEN_MIN_SHARE * mask.size
+        return Frame(yuyv, mask if seen else None, T, self._motion(poses))
+
+    def _motion(self, poses: NDArray[np.float64]) -> tuple[float, float]:
+        places = np.linalg.inv(poses[[0, -1]]) @ self._studio.T_world_object[:, 3]
+        pixels = self._camera.project(places[:, :3])
+        return float(pixels[1, 0] - pixels[0, 0]), float(pixels[1, 1] - pixels[0, 1])
 
     def _poses(self, n: int, exposure_s: float) -> NDArray[np.float64]:
         way = FAR_M + (NEAR_M - FAR_M) * min(n / APPROACH_FRAMES, 1.0)

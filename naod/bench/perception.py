@@ -59,7 +59,8 @@ class _Contestant:
         peer.learn(sequence.shown, sequence.region)
 
     def __call__(self, number: int) -> None:
-        self.seen[number] = self._peer.segment(self.frames[number].yuyv)
+        frame = self.frames[number]
+        self.seen[number] = self._peer.segment(frame.yuyv, frame.motion_px)
 
     def scores(self, camera: PinholeCamera) -> list[Score]:
         """Of everything seen, in order."""

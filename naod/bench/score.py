@@ -52,7 +52,7 @@ def score(
     found = seen.corners_px is not None
     if frame.mask is None:
         return Score(there=False, found=found)
-    mask = main_region(full_size(seen, frame.mask.shape))
+    mask = main_region(seen, frame.mask.shape)
     truth = blob_of_mask(frame.mask)
     corners = seen.corners_px
     box = 0.0
@@ -92,12 +92,18 @@ def full_size(seen: Seen, shape: tuple[int, ...]) -> NDArray[np.uint8]:
     return np.ascontiguousarray(large[: shape[0], : shape[1]])
 
 
-def main_region(mask: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The largest region of touching pixels alone, (H, W) uint8."""
-    count, labels, table, _ = cv2.connectedComponentsWithStats((mask > 0).astype(np.uint8))
-    if count < 2:
+def main_region(seen: Seen, shape: tuple[int, ...]) -> NDArray[np.uint8]:
+    """The region of touching pixels that fills the box most, at the picture's size (H, W)."""
+    mask = full_size(seen, shape)
+    if seen.corners_px is None:
         return np.zeros_like(mask)
-    return np.asarray(labels == 1 + int(np.argmax(table[1:, cv2.CC_STAT_AREA])), dtype=np.uint8)
+    _, labels = cv2.connectedComponents((mask > 0).astype(np.uint8), connectivity=4)
+    inside = np.zeros(mask.shape, dtype=np.uint8)
+    cv2.fillConvexPoly(inside, np.rint(seen.corners_px).astype(np.int32), 1)
+    sizes = np.bincount(np.asarray(labels)[inside > 0].ravel(), minlength=2)
+    sizes[0] = 0
+    chosen = int(np.argmax(sizes))
+    return np.asarray((labels == chosen) & (chosen > 0), dtype=np.uint8)
 
 
 def mask_iou(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:

@@ -6,11 +6,11 @@ import pytest
 from naod.bench import perception
 from naod.bench.frames import Walk, WalkSettings
 from naod.bench.peers.peer import PEERS, make_peer
-from naod.bench.score import full_size, main_region, mask_iou, polygon_iou
+from naod.bench.score import main_region, mask_iou, polygon_iou
 from naod.bench.table import as_text
 from naod.cli.main import main
 
-TINY = WalkSettings(count=2, size=(320, 240))
+TINY = WalkSettings(count=2, size=(320, 240), background="plain")
 
 
 @pytest.fixture(scope="module")
@@ -23,9 +23,9 @@ def test_every_peer_covers_a_sharp_can_and_little_else(name, sharp):
     peer = make_peer(name, TINY.size)
     peer.learn(sharp.shown, sharp.region)
     for frame in sharp.frames:
-        seen = peer.segment(frame.yuyv)
+        seen = peer.segment(frame.yuyv, frame.motion_px)
         assert seen.corners_px is not None
-        mask = main_region(full_size(seen, frame.mask.shape))
+        mask = main_region(seen, frame.mask.shape)
         assert mask_iou(mask, frame.mask) > 0.5
 
 

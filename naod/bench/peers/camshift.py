@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from naod.bench.peers.hsv import cut
-from naod.bench.peers.peer import Seen
+from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.bench.peers.pictures import hsv_of
 from naod.perception.colour_model import Region
 
@@ -40,7 +40,7 @@ class CamShift:
         cv2.normalize(self._histogram, self._histogram, 0, 255, cv2.NORM_MINMAX)
         self._window = (region.x, region.y, region.width, region.height)
 
-    def segment(self, yuyv: NDArray[np.uint8]) -> Seen:
+    def segment(self, yuyv: NDArray[np.uint8], _motion_px: Motion = STILL) -> Seen:
         """Climb; the mask is what is likely within the box."""
         hsv = hsv_of(yuyv)
         likely = cv2.calcBackProject([hsv], [0], self._histogram, [0, 180], 1)

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from naod.bench.peers.peer import Seen
+from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.bench.peers.pictures import bgr_of, box_of
 from naod.perception.colour_model import Region
 
@@ -38,7 +38,7 @@ class GrabCut:
         middle = (x / self._block, y / self._block)
         self._around(middle, region.width / share, region.height / share)
 
-    def segment(self, yuyv: NDArray[np.uint8]) -> Seen:
+    def segment(self, yuyv: NDArray[np.uint8], _motion_px: Motion = STILL) -> Seen:
         """Cut, box, and the next rectangle."""
         bgr = bgr_of(yuyv)
         if self._block > 1:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from naod.bench.peers.peer import Seen
+from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.bench.peers.pictures import box_of, hsv_of
 from naod.perception.colour_model import Region
+
+Level = TypeVar("Level", np.uint8, np.float32)
 
 SHARES = (0.02, 0.98)
 WIDER = (5.0, 40.0, 40.0)
@@ -38,7 +42,7 @@ class HsvThreshold:
         self._lower = np.clip(low - WIDER, 0, 255).astype(np.uint8)
         self._upper = np.clip(high + WIDER, 0, 255).astype(np.uint8)
 
-    def segment(self, yuyv: NDArray[np.uint8]) -> Seen:
+    def segment(self, yuyv: NDArray[np.uint8], _motion_px: Motion = STILL) -> Seen:
         """Threshold, open, close, largest contour."""
         hsv = hsv_of(yuyv)
         hsv[..., 0] = cv2.LUT(np.ascontiguousarray(hsv[..., 0]), self._table)
@@ -48,7 +52,7 @@ class HsvThreshold:
         return box_of(np.asarray(mask))
 
 
-def cut(picture: NDArray[np.uint8], region: Region) -> NDArray[np.uint8]:
+def cut(picture: NDArray[Level], region: Region) -> NDArray[Level]:
     """The region's part of a picture."""
     return picture[region.y : region.y + region.height, region.x : region.x + region.width]
 

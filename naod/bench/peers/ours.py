@@ -6,10 +6,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from naod.bench.peers.peer import Seen
+from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.config import SegmentationConfig
 from naod.perception.blob import find_blob
-from naod.perception.colour_model import Region, learn
+from naod.perception.colour_model import ColourModel, Region, learn
 from naod.perception.segmenter import Segmenter
 
 
@@ -22,9 +22,13 @@ class Ours:
 
     def learn(self, yuyv: NDArray[np.uint8], region: Region) -> None:
         """One Gaussian of the region."""
-        self._segmenter = Segmenter(learn([yuyv], region), self._settings, self._size)
+        self.use(learn([yuyv], region))
 
-    def segment(self, yuyv: NDArray[np.uint8]) -> Seen:
+    def use(self, model: ColourModel) -> None:
+        """Take the colour as learnt by somebody else."""
+        self._segmenter = Segmenter(model, self._settings, self._size)
+
+    def segment(self, yuyv: NDArray[np.uint8], _motion_px: Motion = STILL) -> Seen:
         """Labels and the largest region's box."""
         assert self._segmenter is not None
         segmentation = self._segmenter.segment(yuyv)

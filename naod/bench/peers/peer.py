@@ -17,8 +17,18 @@ PEERS: dict[str, str] = {
     "HSV threshold": "hsv",
     "CAMShift": "camshift",
     "GrabCut at 160x120": "grabcut",
+    "k-means": "kmeans",
+    "mixture by EM": "mixture",
+    "Lucas-Kanade": "lucas_kanade",
+    "Wiener, then exact": "wiener",
+    "Richardson-Lucy, then exact": "richardson_lucy",
+    "exact by PyMaxflow": "pymaxflow",
 }
 """By name: the module in this package. The first is ours."""
+
+
+Motion = tuple[float, float]
+STILL: Motion = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +51,12 @@ class Peer(Protocol):
         """Begin anew from a picture (H, W, 2) and the object's middle in it."""
         ...
 
-    def segment(self, yuyv: NDArray[np.uint8]) -> Seen:
-        """From the camera's picture (H, W, 2) uint8 to mask and box."""
+    def segment(self, yuyv: NDArray[np.uint8], motion_px: Motion = STILL) -> Seen:
+        """From the camera's picture (H, W, 2) uint8 to mask and box.
+
+        motion_px: how far the object went through the picture during the exposure, right and
+        down. A robot knows it from its gyro; who has no use for it leaves it.
+        """
         ...
 
 

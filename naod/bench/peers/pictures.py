@@ -26,10 +26,13 @@ def hsv_of(yuyv: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def box_of(mask: NDArray[np.uint8], grain_px: float = 1.0) -> Seen:
-    """The largest region's oriented box, the way OpenCV's tutorials go about it."""
+    """The largest region's oriented box, by OpenCV's contours."""
     contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     largest = max(contours, key=cv2.contourArea, default=None)
     if largest is None or cv2.contourArea(largest) < AREA_MIN_SHARE * mask.size:
         return Seen(mask, grain_px, None)
-    corners = np.asarray(cv2.boxPoints(cv2.minAreaRect(largest)), dtype=np.float64)
+    middle, (width, height), angle = cv2.minAreaRect(largest)
+    # OpenCV's goes through the centres of the outermost pixels
+    box = (middle, (width + 1.0, height + 1.0), angle)
+    corners = np.asarray(cv2.boxPoints(box), dtype=np.float64)
     return Seen(mask, grain_px, (corners + 0.5) * grain_px - 0.5)
