@@ -23,7 +23,7 @@ from naod.pose.search import (
 )
 from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
 
-PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.1, per_point=3.0, fits_px=1.0)
+PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.05, edge_px=0.05, per_point=3.0, fits_px=1.0)
 MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0, fits_px=2.0)
 
 
@@ -122,7 +122,7 @@ def _result(
     sigma_px = min(point_sigma(reading.fit, noise) for reading in found)
     found = sorted(found, key=lambda reading: misfit(reading, sigma_px))
     best = found[0]
-    total = covariance(best.fit, shape, noise, best.outline.trust)
+    total = covariance(best, shape, noise)
     if estimator == "paper":
         return paper_pose(best, total, shape, camera, blob.clipped)
     for other in found[1:]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from naod.pose.fit import Fit
 from naod.pose.objects import Cylinder, ObjectShape
+from naod.pose.search import Reading
 
 VAGUE = np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 """Information there is without looking: to a metre and a radian."""
@@ -17,6 +18,9 @@ VAGUE = np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 WEIGHTED = 1.27
 """Variance of an estimate with Geman-McClure weights at OUTLIER deviations of normal noise, over
 what the weighted residuals give as if the weights had been known beforehand."""
+
+BLOCKS = 24
+OUTLYING = 25.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,21 +53,39 @@ def point_sigma(fit: Fit, noise: EdgeNoise) -> float:
     return max(noise.floor_px, math.sqrt(variance))
 
 
-def covariance(
-    fit: Fit, shape: ObjectShape, noise: EdgeNoise, trust: NDArray[np.float64] | None = None
-) -> NDArray[np.float64]:
+def misfit_ratio(reading: Reading, noise: EdgeNoise) -> float:
+    """How much more the outline deviates in whole stretches than its points' noise explains.
+
+    1 for a shape that is there as described; more for one that is not quite it, or is partly
+    covered. Birge's ratio over BLOCKS stretches, each counted up to OUTLYING.
+    """
+    fit, points = reading.fit, reading.outline.points_px
+    x, y = (points - points.mean(axis=0)).T
+    around = fit.residuals[np.argsort(np.arctan2(y, x))]
+    blocks = np.array_split(around, BLOCKS)
+    middles = np.array([np.median(block) for block in blocks])
+    sizes = np.array([len(block) for block in blocks])
+    scatter = np.abs(around - np.repeat(middles, sizes))
+    sigma = max(noise.floor_px, 1.4826 * float(np.median(scatter)))
+    # a median scatters by a quarter more than a mean
+    squares = middles**2 * sizes / (1.57 * sigma**2 * noise.per_point)
+    return max(1.0, float(np.minimum(squares, OUTLYING).sum()) / (BLOCKS - 6))
+
+
+def covariance(reading: Reading, shape: ObjectShape, noise: EdgeNoise) -> NDArray[np.float64]:
     """(6, 6) of translation (m) and rotation (rad) along the camera's axes.
 
     The turn of a cylinder about its own axis is fixed by convention and has no variance.
     """
-    weights = fit.weights if trust is None else fit.weights * trust
+    fit = reading.fit
+    weights = fit.weights * reading.outline.trust
     weighted = fit.jacobian * (weights / (point_sigma(fit, noise) ** 2 * noise.per_point))[:, None]
     information = weighted.T @ fit.jacobian + VAGUE
     if isinstance(shape, Cylinder):
         axis = np.append(np.zeros(3), fit.T_camera_object[:3, 1])
         information += 1e6 * np.trace(information[3:, 3:]) * np.outer(axis, axis)
     inverse = np.linalg.inv(information)
-    total = inverse.copy()
+    total = inverse * misfit_ratio(reading, noise)
     for edge in np.unique(fit.edges):
         total += _shared(inverse, weighted[fit.edges == edge], noise.edge_px)
     total += _shared(inverse, weighted, noise.common_px)

@@ -6,25 +6,35 @@ from edge_places import edge_places
 from raster import BOARD, CAMERA, CAN, board_pose, can_pose
 
 from naod.pose.fit import fit_outline
-from naod.pose.search import upright
-from naod.pose.uncertainty import EdgeNoise, covariance
+from naod.pose.outline import Outline
+from naod.pose.search import Reading, upright
+from naod.pose.uncertainty import EdgeNoise, covariance, misfit_ratio
 
 CASES = [(CAN, can_pose((0.02, 0.05, 0.5), 0.5)), (BOARD, board_pose((0.0, 0.1, 0.8), 0.3, 0.4))]
 
 
-def normalised_error(shape, T, offsets, noise):
+INDEPENDENT = EdgeNoise(floor_px=0.05, common_px=0.0, edge_px=0.0, per_point=1.0, fits_px=2.0)
+
+
+def read(shape, T, offsets):
+    """A pose fitted to edge points so far outside the true outline, in pixels."""
     places, normals = edge_places(shape, T)
-    points = CAMERA.normalised(places + offsets[:, None] * normals)
-    fit = upright(fit_outline(shape, T, points, CAMERA.fx, 0.3), shape)
-    gap = fit.T_camera_object[:3, 3] - T[:3, 3]
-    return gap @ np.linalg.solve(covariance(fit, shape, noise)[:3, :3], gap) / 3.0
+    points = places + offsets[:, None] * normals
+    outline = Outline(points, np.ones(len(points)), 0.5, ())
+    fit = fit_outline(shape, T, CAMERA.normalised(points), CAMERA.fx, 0.3)
+    return Reading(upright(fit, shape), outline)
+
+
+def normalised_error(shape, T, offsets, noise):
+    reading = read(shape, T, offsets)
+    gap = reading.fit.T_camera_object[:3, 3] - T[:3, 3]
+    return gap @ np.linalg.solve(covariance(reading, shape, noise)[:3, :3], gap) / 3.0
 
 
 @pytest.mark.parametrize(("shape", "T"), CASES)
 def test_independent_noise_is_stated_as_it_is(shape, T):
     rng = np.random.default_rng(7)
-    noise = EdgeNoise(floor_px=0.05, common_px=0.0, edge_px=0.0, per_point=1.0, fits_px=2.0)
-    errors = [normalised_error(shape, T, rng.normal(0, 0.4, 240), noise) for _ in range(150)]
+    errors = [normalised_error(shape, T, rng.normal(0, 0.4, 240), INDEPENDENT) for _ in range(150)]
     assert 0.75 < np.mean(errors) < 1.35
 
 
@@ -41,9 +51,21 @@ def test_an_outline_too_wide_or_narrow_as_a_whole_is_stated_too(shape, T):
 
 def test_the_turn_of_a_can_about_itself_has_no_variance():
     shape, T = CASES[0]
-    places, _ = edge_places(shape, T)
-    fit = fit_outline(shape, T, CAMERA.normalised(places), CAMERA.fx, 0.3)
-    total = covariance(fit, shape, EdgeNoise(0.3, 0.1, 0.1, 3.0, 1.0))
-    axis = fit.T_camera_object[:3, 1]
+    reading = read(shape, T, np.zeros(240))
+    total = covariance(reading, shape, EdgeNoise(0.3, 0.1, 0.1, 3.0, 1.0))
+    axis = reading.fit.T_camera_object[:3, 1]
     assert axis @ total[3:, 3:] @ axis < 1e-6
     assert np.linalg.eigvalsh(total).min() > -1e-12
+
+
+def test_a_shape_that_is_not_quite_the_described_one_is_less_sure():
+    rng = np.random.default_rng(9)
+    shape, T = CASES[1]
+    noise = rng.normal(0, 0.2, 240)
+    plain = read(shape, T, noise)
+    assert misfit_ratio(plain, INDEPENDENT) < 2.0
+    bulging = noise + np.tile(1.5 * np.sin(np.linspace(0.0, np.pi, 60)), 4)
+    bent = read(shape, T, bulging)
+    assert misfit_ratio(bent, INDEPENDENT) > 5.0
+    spreads = [np.trace(covariance(r, shape, INDEPENDENT)[:3, :3]) for r in (plain, bent)]
+    assert spreads[1] > 5.0 * spreads[0]
