@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from naod.cli.output import Progress, print_json
 from naod.cli.pictures import Picture, find_files, read_pictures
 from naod.config import SegmentationConfig
+from naod.errors import InputError
 from naod.files import write_whole
 from naod.perception.blob import find_blob
 from naod.perception.colour_model import ColourModel, load_model
@@ -50,6 +51,8 @@ def run(args: argparse.Namespace) -> int:
     """Segment everything, a line each."""
     segmenters = Segmenters(load_model(args.model))
     files = find_files(args.inputs)
+    if args.out is not None:
+        _spare_inputs(files, args.out)
     progress = Progress("segmenting")
     for picture in read_pictures(files):
         line, mask = _segment(segmenters.of(picture), picture)
@@ -63,6 +66,13 @@ def run(args: argparse.Namespace) -> int:
         progress.tick(picture.stem)
     progress.done()
     return 0
+
+
+def _spare_inputs(files: list[Path], out: Path) -> None:
+    """Raises InputError where a mask would take the place of its own picture."""
+    for path in files:
+        if (out / f"{path.stem}.png").resolve() == path.resolve():
+            raise InputError(f"--out {out}: the mask of {path} would replace it")
 
 
 def _segment(segmenter: Segmenter, picture: Picture) -> tuple[dict[str, object], NDArray[np.uint8]]:

@@ -110,6 +110,14 @@ def test_an_empty_folder_and_two_of_one_name(capfd, tmp_path, model):
     assert "same name" in refuse(capfd, "segment", one, other, "--model", model)
 
 
+def test_a_mask_never_replaces_its_picture(capfd, tmp_path, model):
+    path = write(tmp_path / "a.png", picture())
+    before = (tmp_path / "a.png").read_bytes()
+    words = ("segment", path, "--model", model, "--out", tmp_path)
+    assert "would replace it" in refuse(capfd, *words)
+    assert (tmp_path / "a.png").read_bytes() == before
+
+
 def test_bad_models_in_one_line(capfd, tmp_path):
     path = write(tmp_path / "a.png", picture())
     assert "no such file" in refuse(capfd, "segment", path, "--model", tmp_path / "none.toml")
