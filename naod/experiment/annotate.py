@@ -11,13 +11,18 @@ from hal.types import Frame
 from hal.yuyv import rgb_from_yuyv
 from naod.geometry.camera import PinholeCamera
 from naod.loop.equipment import Sighting
+from naod.pose.objects import Cylinder, ObjectShape
 
 _GREEN, _YELLOW, _WHITE, _INK = (60, 220, 60), (255, 220, 40), (255, 255, 255), (0, 0, 0)
 _AXES = ((255, 60, 60), (60, 255, 60), (80, 120, 255))
 
 
 def annotated(
-    frame: Frame, sighting: Sighting | None, camera: PinholeCamera, axis_m: float = 0.06
+    frame: Frame,
+    sighting: Sighting | None,
+    camera: PinholeCamera,
+    shape: ObjectShape,
+    axis_m: float = 0.06,
 ) -> NDArray[np.uint8]:
     """The frame as (H, W, 3) RGB uint8, drawn on."""
     picture = np.ascontiguousarray(rgb_from_yuyv(frame.yuyv))
@@ -25,8 +30,8 @@ def annotated(
         return _written(picture, "not seen")
     _draw_mask(picture, sighting.segmentation.mask)
     if sighting.pose is not None:
-        corners = np.rint(sighting.pose.corners_px).astype(np.int32).reshape(-1, 1, 2)
-        cv2.polylines(picture, [corners], True, _YELLOW, 1, cv2.LINE_AA)
+        edge = np.rint(_outline(shape, sighting.pose.T_camera_object, camera)).astype(np.int32)
+        cv2.polylines(picture, [cv2.convexHull(edge)], True, _YELLOW, 1, cv2.LINE_AA)
         _draw_axes(picture, sighting.pose.T_camera_object, camera, axis_m)
     if sighting.look is None:
         return picture
@@ -43,6 +48,21 @@ def _draw_mask(picture: NDArray[np.uint8], mask: NDArray[np.uint8]) -> None:
     picture[inside] = (0.8 * picture[inside] + 0.2 * np.array(_GREEN)).astype(np.uint8)
     outlines, _ = cv2.findContours(large, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     cv2.drawContours(picture, outlines, -1, _GREEN, 1)
+
+
+def _outline(
+    shape: ObjectShape, T: NDArray[np.float64], camera: PinholeCamera
+) -> NDArray[np.float64]:
+    """(n, 2) pixels whose hull is the object's outline at a pose."""
+    if isinstance(shape, Cylinder):
+        turn = np.linspace(0.0, 2.0 * np.pi, 72)
+        x, z = shape.radius_m * np.cos(turn), shape.radius_m * np.sin(turn)
+        y = np.full_like(turn, 0.5 * shape.height_m)
+        points = np.vstack([np.column_stack((x, s * y, z)) for s in (1.0, -1.0)])
+    else:
+        corners = np.array([[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [-1.0, -1.0, 0.0]])
+        points = corners * (0.5 * shape.width_m, 0.5 * shape.height_m, 0.0)
+    return camera.project(points @ T[:3, :3].T + T[:3, 3])
 
 
 def _draw_axes(

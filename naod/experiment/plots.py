@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hal.simulation import Truth
 from naod.experiment.summary import EgoRow, LocalisationRow
+from naod.pose.objects import Cylinder, ObjectShape
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
@@ -26,11 +27,11 @@ def figure_10(
     room_end: NDArray[np.uint8],
     way: Sequence[Truth],
     shown: Truth,
-    round_object: bool,
+    shape: ObjectShape,
 ) -> None:
     """The room before and after, and between them the way from above.
 
-    Around a `round_object` a circle shows all the poses that look like the one shown.
+    Around a cylinder a circle shows all the poses that look like the one shown.
     """
     figure, axes = plt.subplots(1, 3, figsize=(15, 4.4), gridspec_kw={"width_ratios": [1, 1.1, 1]})
     for axis, picture, title in (
@@ -40,7 +41,7 @@ def figure_10(
         axis.imshow(picture)
         axis.set_title(title)
         axis.axis("off")
-    _way_from_above(axes[1], way, shown, round_object)
+    _way_from_above(axes[1], way, shown, shape)
     _save(figure, path)
 
 
@@ -92,18 +93,22 @@ def figure_12(path: Path, rows: Sequence[LocalisationRow]) -> None:
     _save(figure, path)
 
 
-def _way_from_above(axis: Axes, way: Sequence[Truth], shown: Truth, round_object: bool) -> None:
+def _way_from_above(axis: Axes, way: Sequence[Truth], shown: Truth, shape: ObjectShape) -> None:
     x, y = [t.base.x for t in way], [t.base.y for t in way]
     axis.plot(x, y, color=_EXACT, lw=1.5, label="way walked")
     place = shown.T_world_object[:3, 3]
-    axis.plot(place[0], place[1], "s", color=_TRUE, ms=9, label="object")
-    if round_object:
+    if isinstance(shape, Cylinder):
+        axis.add_patch(plt.Circle(place[:2], shape.radius_m, color=_TRUE, label="object"))
         radius = math.hypot(shown.base.x - place[0], shown.base.y - place[1])
         label = "poses that look like it"
         axis.add_patch(
             plt.Circle(place[:2], radius, fill=False, color=_PAPER, ls=":", lw=1, label=label)
         )
-    _robot(axis, shown.base.x, shown.base.y, shown.base.yaw, _PAPER, "pose shown")
+    else:
+        half = 0.5 * shape.width_m * shown.T_world_object[:2, 0]
+        ends = np.array([place[:2] - half, place[:2] + half])
+        axis.plot(ends[:, 0], ends[:, 1], color=_TRUE, lw=4, label="object")
+    _robot(axis, shown.base.x, shown.base.y, shown.base.yaw, _PAPER, "pose shown", 11)
     if way:
         _robot(axis, x[0], y[0], way[0].base.yaw, _INK, "start")
         _robot(axis, x[-1], y[-1], way[-1].base.yaw, _EXACT, "end")
@@ -113,9 +118,11 @@ def _way_from_above(axis: Axes, way: Sequence[Truth], shown: Truth, round_object
     axis.legend(fontsize=8, loc="best")
 
 
-def _robot(axis: Axes, x: float, y: float, yaw: float, colour: str, label: str = "") -> None:
+def _robot(
+    axis: Axes, x: float, y: float, yaw: float, colour: str, label: str = "", size: float = 6
+) -> None:
     dx, dy = 0.1 * math.cos(yaw), 0.1 * math.sin(yaw)
-    axis.plot([x], [y], "o", color=colour, ms=6, label=label or None, mfc="none", mew=1.6)
+    axis.plot([x], [y], "o", color=colour, ms=size, label=label or None, mfc="none", mew=1.6)
     axis.annotate(
         "", (x + dx, y + dy), (x, y), arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6}
     )

@@ -15,7 +15,6 @@ from naod.experiment.approach_run import Outcome
 from naod.experiment.lockstep import LockStep, Tick
 from naod.experiment.plots import figure_10, figure_11, figure_12
 from naod.files import write_whole
-from naod.pose.objects import Cylinder
 
 ROOM_SIZE = (640, 480)
 FILM_SIZE = (400, 300)
@@ -37,7 +36,9 @@ class Film:
         self._next_ns = tick.now_ns + FILM_PERIOD_NS
         width, height = FILM_SIZE
         room = self._run.robot.room_view(width, height)
-        view = annotated(tick.seen.frame, tick.sighting, self._run.equipment.camera)
+        view = annotated(
+            tick.seen.frame, tick.sighting, self._run.equipment.camera, self._run.equipment.shape
+        )
         own = cv2.resize(view, FILM_SIZE, interpolation=cv2.INTER_AREA)
         self._pictures.append(Image.fromarray(np.hstack([room, own])))
 
@@ -62,8 +63,8 @@ def write_report(
     summary = msgspec.json.format(msgspec.json.encode(outcome.summary), indent=1)
     room_end = run.robot.room_view(*ROOM_SIZE)
     way, shown = outcome.journal.way, outcome.shown
-    round_object = isinstance(run.equipment.shape, Cylinder)
-    figure_10(folder / "figure_10.png", room_start, room_end, way, shown, round_object)
+    shape = run.equipment.shape
+    figure_10(folder / "figure_10.png", room_start, room_end, way, shown, shape)
     figure_11(folder / "figure_11.png", outcome.summary.localisation)
     figure_12(folder / "figure_12.png", outcome.summary.localisation)
     frames = folder / "frames"
@@ -71,6 +72,6 @@ def write_report(
     for old in frames.glob("look_*.png"):
         old.unlink()
     for number, (frame, sighting) in enumerate(outcome.journal.sights):
-        drawn = annotated(frame, sighting, run.equipment.camera)
+        drawn = annotated(frame, sighting, run.equipment.camera, run.equipment.shape)
         Image.fromarray(drawn).save(frames / f"look_{number:02d}.png")
     write_whole(folder / "summary.json", summary + b"\n")
