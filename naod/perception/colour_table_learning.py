@@ -164,12 +164,15 @@ def _counted(
     around = 2 * max(3, round(settings.ring * side)) + 3
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (around, around))
     zone = cv2.dilate(marked.inside.astype(np.uint8), disc) > 0
-    layers = cut_out(marked.light, marked.inside, marked.unsure)
     elsewhere = marked.light[~(marked.inside | marked.unsure)]
+    # no motion brings light from farther away
+    near = _box_of(zone, round(max(settings.blurs) * side) + 2)
+    zone, unsure = zone[near], marked.unsure[near]
+    layers = cut_out(marked.light[near], marked.inside[near], unsure)
     object_, behind = np.zeros(CELLS), np.zeros(CELLS)
     lengths = tuple(blur * side for blur in settings.blurs)
     for length, angle in motions(lengths, settings.turns):
-        places = np.flatnonzero(zone if length > 0.0 else zone & ~marked.unsure)
+        places = np.flatnonzero(zone if length > 0.0 else zone & ~unsure)
         weight = 1000.0 / area * (1.0 / settings.turns if length > 0.0 else 1.0)
         if len(places) > settings.samples_max:
             weight *= len(places) / settings.samples_max
@@ -178,6 +181,15 @@ def _counted(
         sample.count_surroundings(weight, object_, behind)
         sample.count_rooms(weight * settings.room, elsewhere, object_, behind)
     return object_, behind
+
+
+def _box_of(mask: Mask, margin: int) -> tuple[slice, slice]:
+    """Rows and columns that hold a mask and a margin around it, within the picture."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return (
+        slice(max(int(rows[0]) - margin, 0), int(rows[-1]) + 1 + margin),
+        slice(max(int(columns[0]) - margin, 0), int(columns[-1]) + 1 + margin),
+    )
 
 
 class _Sample:
