@@ -10,6 +10,7 @@ import msgspec
 
 from naod.bench.frames import Sequence, Walk, WalkSettings
 from naod.bench.peers.peer import PEERS, Peer, Seen, make_peer
+from naod.bench.real import FOLDER_VARIABLE, real_sequences
 from naod.bench.score import LOST_BELOW, Score, Summary, score, summary
 from naod.bench.table import Report
 from naod.bench.timing import interleaved
@@ -20,6 +21,7 @@ EXPOSURES_S = (0.0, 0.010, 0.033)
 ABSENT = "absent"
 MEMCPY = "memcpy of a frame"
 OURS = next(iter(PEERS))
+WIDTHS, GROWTH_FRAMES = (160, 320), 8
 ABSENT_SHARE = 3
 """Pictures without the object: one for this many with it."""
 
@@ -32,7 +34,12 @@ def run(progress: Progress, settings: WalkSettings | None = None) -> Report:
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
     try:
-        return _report(_sequences(settings, progress), settings, progress)
+        sequences = _sequences(settings, progress)
+        tally = _Tally()
+        for sequence in [*sequences, *real_sequences()]:
+            tally.add(sequence, progress)
+        grown = {width: _at_width(width, settings, progress) for width in WIDTHS}
+        return _report(tally, grown, settings)
     finally:
         cv2.setNumThreads(threads)
 
@@ -71,19 +78,20 @@ class _Contestant:
 class _Tally:
     """What every sequence said about every peer."""
 
-    def __init__(self, size: tuple[int, int]) -> None:
-        self.size = size
-        self.camera = nominal_camera("v6", *size)
+    def __init__(self) -> None:
         self.summaries: dict[str, dict[str, Summary]] = {}
         self.medians_ms: dict[str, list[float]] = {}
         self.missing: dict[str, str] = {}
 
     def add(self, sequence: Sequence, progress: Progress) -> None:
         """Let everybody who is installed see the sequence, in turns."""
+        height, width = sequence.shown.shape[:2]
+        size = (width, height)
+        camera = nominal_camera("v6", *size)
         contestants: dict[str, _Contestant] = {}
         for name in PEERS:
             try:
-                contestants[name] = _Contestant(make_peer(name, self.size), sequence)
+                contestants[name] = _Contestant(make_peer(name, size), sequence)
             except ImportError as error:
                 self.missing[name] = f"not installed: {error.name}"
         progress(f"{sequence.name}: {len(contestants)} methods")
@@ -91,10 +99,11 @@ class _Tally:
             MEMCPY: lambda number: sequence.frames[number].yuyv.copy()
         }
         timings = interleaved({**copies, **contestants}, OURS, len(sequence.frames), warm_up=1)
-        for timing in timings:
+        rendered = sequence.frames[0].T_camera_object is not None or sequence.name == ABSENT
+        for timing in timings if rendered else ():
             self.medians_ms.setdefault(timing.name, []).append(timing.median_ms)
         for name, contestant in contestants.items():
-            said = summary(contestant.scores(self.camera))
+            said = summary(contestant.scores(camera))
             self.summaries.setdefault(name, {})[sequence.name] = said
         progress(sequence.name)
 
@@ -103,33 +112,48 @@ class _Tally:
         return statistics.median(self.medians_ms[name])
 
 
-def _report(sequences: list[Sequence], settings: WalkSettings, progress: Progress) -> Report:
-    tally = _Tally(settings.size)
-    for sequence in sequences:
-        tally.add(sequence, progress)
-    blurs = [sequence.name for sequence in sequences if sequence.name != ABSENT]
+def _at_width(width: int, settings: WalkSettings, progress: Progress) -> _Tally:
+    """A few sharp pictures of another size, for the time alone."""
+    size = (width, width * 3 // 4)
+    small = msgspec.structs.replace(settings, size=size, count=min(settings.count, GROWTH_FRAMES))
+    tally = _Tally()
+    tally.add(Walk(small).taken(f"{width} wide", 0.0), progress)
+    return tally
+
+
+def _report(tally: _Tally, grown: dict[int, _Tally], settings: WalkSettings) -> Report:
+    blurs = [f"{1e3 * exposure:.0f} ms" for exposure in EXPOSURES_S]
+    real = [name for name in tally.summaries[OURS] if name not in (*blurs, ABSENT)]
     columns = ["method", "ms", "times ours"]
     for what in ("box IoU", "mask IoU", "lost %", "distance %"):
         columns += [f"{what} {blur}" for blur in blurs]
-    rows = [_row(name, tally, blurs) for name in PEERS]
+    columns += ["found absent %", *(f"mask IoU {name}" for name in real)]
+    columns += [f"ms at {width}" for width in grown]
+    rows = [_row(name, tally, blurs, real, grown) for name in PEERS]
     memcpy_ms = tally.median_ms(MEMCPY)
-    empty = (None,) * (len(columns) - 3)
-    rows.append((MEMCPY, memcpy_ms, memcpy_ms / tally.median_ms(OURS), *empty, None))
+    empty = (None,) * (len(columns) - 3 - len(grown))
+    small_ms = [other.median_ms(MEMCPY) for other in grown.values()]
+    rows.append((MEMCPY, memcpy_ms, memcpy_ms / tally.median_ms(OURS), *empty, *small_ms))
     width, height = settings.size
-    notes = (
-        f"{len(sequences[0].frames)} rendered frames of {width}x{height} per exposure; medians, a "
+    notes: tuple[str, ...] = (
+        f"{settings.count} rendered frames of {width}x{height} per exposure; medians, a "
         f"lost frame counting 0; lost: nothing found, or box IoU below {LOST_BELOW}",
         "distance: median error of the pose that follows from the mask alone; one thread",
     )
-    return Report("perception", (*columns, "found absent %"), tuple(rows), notes)
+    if not real:
+        notes = (*notes, f"no photographs: {FOLDER_VARIABLE} names the folder they are in")
+    return Report("perception", tuple(columns), tuple(rows), notes)
 
 
 Row = tuple[str | float | int | None, ...]
 
 
-def _row(name: str, tally: _Tally, blurs: list[str]) -> Row:
+def _row(
+    name: str, tally: _Tally, blurs: list[str], real: list[str], grown: dict[int, _Tally]
+) -> Row:
     if name not in tally.summaries:
-        return (f"{name} ({tally.missing[name]})", *(None,) * (3 + 4 * len(blurs)))
+        cells = 3 + 4 * len(blurs) + len(real) + len(grown)
+        return (f"{name} ({tally.missing[name]})", *(None,) * cells)
     said = tally.summaries[name]
     ms = tally.median_ms(name)
     return (
@@ -141,6 +165,8 @@ def _row(name: str, tally: _Tally, blurs: list[str]) -> Row:
         *(_percent(said[blur].lost) for blur in blurs),
         *(_percent(said[blur].distance_error) for blur in blurs),
         _percent(said[ABSENT].found_absent),
+        *(said[photographs].mask_iou for photographs in real),
+        *(other.median_ms(name) for other in grown.values()),
     )
 
 

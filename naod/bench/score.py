@@ -84,12 +84,14 @@ def summary(scores: list[Score]) -> Summary:
 
 
 def full_size(seen: Seen, shape: tuple[int, ...]) -> NDArray[np.uint8]:
-    """The mask at the picture's size (H, W), each mask pixel a block."""
+    """The mask at the picture's size (H, W), each mask pixel a block, the rest empty."""
     grain = round(seen.grain_px)
     if grain == 1:
         return seen.mask
     large = np.repeat(np.repeat(seen.mask, grain, axis=0), grain, axis=1)
-    return np.ascontiguousarray(large[: shape[0], : shape[1]])
+    large = large[: shape[0], : shape[1]]
+    rest = (shape[0] - large.shape[0], shape[1] - large.shape[1])
+    return np.pad(large, ((0, rest[0]), (0, rest[1])))
 
 
 def main_region(seen: Seen, shape: tuple[int, ...]) -> NDArray[np.uint8]:

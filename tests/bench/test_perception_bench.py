@@ -1,11 +1,17 @@
 """The benchmark of perception, tiny: every method on rendered pictures with known truth."""
 
+import json
+import sys
+
+import cv2
 import numpy as np
 import pytest
 
 from naod.bench import perception
 from naod.bench.frames import Walk, WalkSettings
+from naod.bench.peers import richardson_lucy, wiener
 from naod.bench.peers.peer import PEERS, make_peer
+from naod.bench.peers.restored import motion_kernel
 from naod.bench.score import main_region, mask_iou, polygon_iou
 from naod.bench.table import as_text
 from naod.cli.main import main
@@ -37,6 +43,58 @@ def test_the_report_has_a_row_for_everybody_and_memory_is_the_floor(capsys):
     assert all(times[name] > times[perception.MEMCPY] for name in PEERS)
     assert all(len(row) == len(report.columns) for row in report.rows)
     assert all(name in as_text(report) for name in names)
+
+
+def test_one_json_document_and_a_plot(monkeypatch, capsys, tmp_path):
+    tiny = perception.run
+    monkeypatch.setattr(perception, "run", lambda progress: tiny(progress, TINY))
+    picture = tmp_path / "bench.png"
+    assert main(["bench", "perception", "--json", "--plot", str(picture)]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [bench["name"] for bench in document["benches"]] == ["perception"]
+    assert {"name", "columns", "rows", "notes"} <= set(document["benches"][0])
+    assert cv2.imread(str(picture)).shape[2] == 3
+
+
+def test_a_method_whose_library_is_missing_says_so(monkeypatch):
+    monkeypatch.setitem(sys.modules, "naod.bench.peers.mixture", None)
+    monkeypatch.setattr(perception, "real_sequences", list)
+    report = perception.run(lambda _: None, TINY)
+    assert any("no photographs" in note for note in report.notes)
+    row = next(row for row in report.rows if str(row[0]).startswith("mixture"))
+    assert "not installed" in row[0]
+    assert row[1] is None
+
+
+def test_the_referee_finds_the_same_minimum(sharp):
+    ours, referee = (make_peer(name, TINY.size) for name in ("exact minimum", "exact by PyMaxflow"))
+    for peer in (ours, referee):
+        peer.learn(sharp.shown, sharp.region)
+    yuyv = sharp.frames[0].yuyv
+    assert (ours.segment(yuyv).mask == referee.segment(yuyv).mask).all()
+
+
+@pytest.mark.parametrize("undo", [wiener.undo, richardson_lucy.undo])
+@pytest.mark.parametrize("motion", [(6.0, 0.0), (3.0, -4.0)])
+def test_a_filter_undoes_most_of_a_known_motion(undo, motion, monkeypatch):
+    # without noise they may go all the way
+    monkeypatch.setattr(wiener, "NOISE_TO_SIGNAL", 0.001)
+    monkeypatch.setattr(richardson_lucy, "ITERATIONS", 80)
+    sharp = np.full((60, 80, 3), 60.0, dtype=np.float32)
+    sharp[20:40, 30:50] = 200.0
+    kernel = motion_kernel(*motion)
+    blurred = cv2.filter2D(sharp, -1, kernel, borderType=cv2.BORDER_REFLECT)
+    before, after = (((p - sharp) ** 2).mean() for p in (blurred, undo(blurred, kernel)))
+    assert after < 0.3 * before
+
+
+def test_a_motion_kernel_is_as_long_and_as_slanted_as_the_motion():
+    kernel = motion_kernel(6.0, -3.0)
+    rows, columns = np.indices(kernel.shape) - kernel.shape[0] // 2
+    assert kernel.sum() == pytest.approx(1.0)
+    # a uniform distribution's variance, length squared over 12, and what bilinear sharing adds
+    assert (kernel * columns**2).sum() == pytest.approx(36.0 / 12.0 + 1.0 / 6.0, abs=0.1)
+    assert (kernel * columns * rows).sum() == pytest.approx(-18.0 / 12.0, abs=0.1)
 
 
 def test_an_unknown_benchmark_is_one_line(capsys):

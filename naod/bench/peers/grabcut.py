@@ -42,6 +42,8 @@ class GrabCut:
         """Cut, box, and the next rectangle."""
         bgr = bgr_of(yuyv)
         if self._block > 1:
+            width, height = self._size[0] * self._block, self._size[1] * self._block
+            bgr = bgr[:height, :width]
             bgr = np.asarray(cv2.resize(bgr, self._size, interpolation=cv2.INTER_AREA))
         labels = np.zeros(bgr.shape[:2], dtype=np.uint8)
         back, fore = np.zeros((1, 65)), np.zeros((1, 65))

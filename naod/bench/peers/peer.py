@@ -13,6 +13,7 @@ from naod.perception.colour_model import Region
 
 PEERS: dict[str, str] = {
     "exact minimum": "ours",
+    "exact minimum, blur table": "blur_table",
     "ICM": "icm",
     "HSV threshold": "hsv",
     "CAMShift": "camshift",

@@ -30,7 +30,8 @@ class Restored:
 
     def __init__(self, size: tuple[int, int], undo: Filter) -> None:
         self._reduced, self._undo = Reduced(size), undo
-        self._ours = ours.make(self._reduced.size)
+        width, height = self._reduced.size
+        self._ours = ours.make((width + width % 2, height))
 
     def learn(self, yuyv: NDArray[np.uint8], region: Region) -> None:
         """As ours does, from the whole picture."""
@@ -62,7 +63,9 @@ def motion_kernel(dx: float, dy: float) -> NDArray[np.float32]:
 
 
 def _encoded(picture: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """(h, w, 3) Y U V to YUYV (h, w, 2), w even."""
+    """(h, w, 3) Y U V to YUYV (h, w, 2), an odd last column twice."""
+    if picture.shape[1] % 2:
+        picture = np.concatenate([picture, picture[:, -1:]], axis=1)
     height, width = picture.shape[:2]
     out = np.empty((height, width, 2), dtype=np.uint8)
     levels = np.clip(picture, 0.0, 255.0)
