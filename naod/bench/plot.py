@@ -12,18 +12,20 @@ COLOURS = ("#2b6cb0", "#63b3ed", "#bee3f8")
 
 
 def plot(report: Report, path: Path) -> None:
-    """Write PNG. Raises InputError where matplotlib is missing or the file cannot be written."""
+    """Write PNG. Raises InputError where there is nothing to draw, or no way to."""
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
         raise InputError("a plot needs matplotlib, which is not installed") from None
     rows = [row for row in report.rows if isinstance(row[1], float)]
+    blurs = [i for i, column in enumerate(report.columns) if column.startswith(IOU)]
+    if not blurs:
+        raise InputError(f"--plot: {report.name} has no overlaps to draw")
     names = [str(row[0]) for row in rows]
     figure = Figure(figsize=(11.0, 0.45 * len(rows) + 1.2), layout="constrained")
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2, sharey=True)
-    blurs = [i for i, column in enumerate(report.columns) if column.startswith(IOU)]
     for n, column in enumerate(blurs):
         values = [_number(row[column]) for row in rows]
         places = [i + 0.25 * (n - 1) for i in range(len(rows))]

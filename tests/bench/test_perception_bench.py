@@ -2,6 +2,7 @@
 
 import json
 import sys
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -12,11 +13,17 @@ from naod.bench.frames import Walk, WalkSettings
 from naod.bench.peers import richardson_lucy, wiener
 from naod.bench.peers.peer import PEERS, make_peer
 from naod.bench.peers.restored import motion_kernel
+from naod.bench.real import DEFAULT_FOLDER, FOLDER_VARIABLE, real_sequences
 from naod.bench.score import main_region, mask_iou, polygon_iou
 from naod.bench.table import as_text
 from naod.cli.main import main
 
 TINY = WalkSettings(count=2, size=(320, 240), background="plain")
+
+
+@pytest.fixture(autouse=True)
+def no_photographs(monkeypatch, tmp_path):
+    monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +65,6 @@ def test_one_json_document_and_a_plot(monkeypatch, capsys, tmp_path):
 
 def test_a_method_whose_library_is_missing_says_so(monkeypatch):
     monkeypatch.setitem(sys.modules, "naod.bench.peers.mixture", None)
-    monkeypatch.setattr(perception, "real_sequences", list)
     report = perception.run(lambda _: None, TINY)
     assert any("no photographs" in note for note in report.notes)
     row = next(row for row in report.rows if str(row[0]).startswith("mixture"))
@@ -95,6 +101,19 @@ def test_a_motion_kernel_is_as_long_and_as_slanted_as_the_motion():
     # a uniform distribution's variance, length squared over 12, and what bilinear sharing adds
     assert (kernel * columns**2).sum() == pytest.approx(36.0 / 12.0 + 1.0 / 6.0, abs=0.1)
     assert (kernel * columns * rows).sum() == pytest.approx(-18.0 / 12.0, abs=0.1)
+
+
+def test_photographs_come_with_masks_of_their_size(monkeypatch):
+    folder = Path(__file__).parents[2] / DEFAULT_FOLDER
+    if not (folder / "lemur").is_dir():
+        pytest.skip("the folder of real pictures is not here")
+    monkeypatch.setenv(FOLDER_VARIABLE, str(folder))
+    sequences = {sequence.name: sequence for sequence in real_sequences()}
+    assert len(sequences["drift"].frames) == 16
+    for sequence in sequences.values():
+        for frame in sequence.frames:
+            assert frame.mask.shape == frame.yuyv.shape[:2]
+            assert 0.001 < frame.mask.mean() < 0.9
 
 
 def test_an_unknown_benchmark_is_one_line(capsys):
