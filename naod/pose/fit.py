@@ -15,14 +15,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.linear import solve_symmetric
-from naod.pose.contour import ARC, CYLINDER, VERTICES, figures, is_arc, outline
+from naod.pose.contour import CYLINDER, VERTICES, figures, is_arc, outline
+from naod.pose.foot import DEPTH_MIN_M, foot, nearest, project, tangent
 from naod.pose.objects import ObjectShape
 
 ITERATIONS = 12
 OUTLIER = 3.0
 """Robust standard deviations at which a point's weight has fallen to a quarter."""
-
-DEPTH_MIN_M = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,98 +45,6 @@ class Fit:
 
 
 @njit(cache=True, nogil=True)
-def _project(
-    R: NDArray[np.float64],
-    t: NDArray[np.float64],
-    vertices: NDArray[np.float64],
-    count: int,
-    image: NDArray[np.float64],
-) -> None:
-    for k in range(count):
-        x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
-        depth = R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2]
-        depth = max(depth, DEPTH_MIN_M)
-        image[k, 0] = (R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0]) / depth
-        image[k, 1] = (R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1]) / depth
-        image[k, 2] = depth
-
-
-@njit(cache=True, nogil=True)
-def _foot_on(image: NDArray[np.float64], k: int, u: float, v: float) -> tuple[float, float]:
-    """Squared distance of (u, v) from a piece, and how far along it the foot lies, 0 to 1."""
-    du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
-    length2 = du * du + dv * dv
-    if length2 < 1e-18:
-        return np.inf, 0.0
-    s = ((u - image[k, 0]) * du + (v - image[k, 1]) * dv) / length2
-    s = min(max(s, 0.0), 1.0)
-    ru, rv = u - image[k, 0] - s * du, v - image[k, 1] - s * dv
-    return ru * ru + rv * rv, s
-
-
-@njit(cache=True, nogil=True)
-def _nearest(
-    kind: int, image: NDArray[np.float64], pieces: int, u: float, v: float
-) -> tuple[int, float]:
-    """The piece of the outline nearest to (u, v), and how far along it the foot lies."""
-    best, near = np.inf, 0
-    if kind == CYLINDER:
-        for k in range(pieces):
-            ru, rv = u - image[k, 0], v - image[k, 1]
-            if ru * ru + rv * rv < best:
-                best, near = ru * ru + rv * rv, k
-        # either side of the nearest corner, and the two long straight pieces
-        candidates = (near, near - 1 if near > 0 else pieces - 1, ARC, 2 * ARC + 1)
-    else:
-        candidates = (0, 1, 2, 3)
-    best, piece, along = np.inf, 0, 0.0
-    for k in candidates:
-        distance2, s = _foot_on(image, k, u, v)
-        if distance2 < best:
-            best, piece, along = distance2, k, s
-    return piece, along
-
-
-@njit(cache=True, nogil=True)
-def _foot(
-    kind: int,
-    half_width: float,
-    vertices: NDArray[np.float64],
-    edge: int,
-    piece: int,
-    part: float,
-    X: NDArray[np.float64],
-) -> None:
-    """The point of the object at a part of a piece."""
-    if is_arc(kind, edge):
-        angle = vertices[piece, 3] + part * (vertices[piece + 1, 3] - vertices[piece, 3])
-        X[0] = half_width * math.sin(angle)
-        X[1] = vertices[piece, 1]
-        X[2] = half_width * math.cos(angle)
-    else:
-        for k in range(3):
-            X[k] = vertices[piece, k] + part * (vertices[piece + 1, k] - vertices[piece, k])
-
-
-@njit(cache=True, nogil=True)
-def _tangent(
-    R: NDArray[np.float64], X: NDArray[np.float64], u: float, v: float, du: float, dv: float
-) -> tuple[float, float]:
-    """Direction of a rim at its point X, seen at (u, v); the chord's where the rim turns sharply.
-
-    A rim seen from its own height is a line there and back, and no tangent where it turns.
-    """
-    x = R[0, 0] * X[2] - R[0, 2] * X[0]
-    y = R[1, 0] * X[2] - R[1, 2] * X[0]
-    z = R[2, 0] * X[2] - R[2, 2] * X[0]
-    tu, tv = x - u * z, y - v * z
-    along = tu * du + tv * dv
-    if abs(along) < 0.9 * math.hypot(tu, tv) * math.hypot(du, dv):
-        return du, dv
-    return (tu, tv) if along > 0.0 else (-tu, -tv)
-
-
-@njit(cache=True, nogil=True)
 def compare(
     kind: int,
     half_width: float,
@@ -153,12 +60,12 @@ def compare(
     vertices, image = np.empty((VERTICES, 4)), np.empty((VERTICES, 3))
     names, X = np.empty(VERTICES, dtype=np.int64), np.empty(3)
     pieces = outline(kind, half_width, half_height, R, t, vertices, names)
-    _project(R, t, vertices, pieces + 1, image)
+    project(R, t, vertices, pieces + 1, image)
     for i in range(points.shape[0]):
         u, v = points[i, 0], points[i, 1]
-        piece, s = _nearest(kind, image, pieces, u, v)
+        piece, s = nearest(kind, image, pieces, u, v)
         near, far = image[piece, 2], image[piece + 1, 2]
-        _foot(kind, half_width, vertices, names[piece], piece,
+        foot(kind, half_width, vertices, names[piece], piece,
               s * near / (s * near + (1.0 - s) * far), X)  # fmt: skip
         a0 = R[0, 0] * X[0] + R[0, 1] * X[1] + R[0, 2] * X[2]
         a1 = R[1, 0] * X[0] + R[1, 1] * X[1] + R[1, 2] * X[2]
@@ -167,7 +74,7 @@ def compare(
         pu, pv = (a0 + t[0]) / depth, (a1 + t[1]) / depth
         du, dv = image[piece + 1, 0] - image[piece, 0], image[piece + 1, 1] - image[piece, 1]
         if is_arc(kind, names[piece]):
-            du, dv = _tangent(R, X, pu, pv, du, dv)
+            du, dv = tangent(R, X, pu, pv, du, dv)
         length = max(math.hypot(du, dv), 1e-12)
         nu, nv = dv / length, -du / length
         residuals[i] = nu * (u - pu) + nv * (v - pv)

@@ -25,10 +25,14 @@ from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
 
 PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.05, edge_px=0.05, per_point=3.0, fits_px=1.0)
 MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0, fits_px=2.0)
+"""Somebody else's mask: half a pixel to and fro is a matter of how it was drawn."""
 
+WIDE = 0.2
+"""How far from a blob's outline edges are looked for, of its width: shading hides as much of a can
+from its colour."""
 
 NEAR_PX = 4.0
-"""How far from a good outline edges are looked for: the step and its plateaus."""
+"""How far from a good outline: the step and its plateaus."""
 
 NEAR_RISES = 1.2
 """The same in widths of a blurred step."""
@@ -41,9 +45,6 @@ SUPPORT_MIN = 0.7
 
 OUTLIER = 3.0
 """Standard deviations beyond which a residual says no more than that it does not fit."""
-
-WIDE = 0.2
-"""The same for a blob's outline, of its width: shading hides as much of a can from its colour."""
 
 
 def locate(

@@ -20,6 +20,7 @@ WEIGHTED = 1.27
 what the weighted residuals give as if the weights had been known beforehand."""
 
 BLOCKS = 24
+BLOCKS_MIN = 8
 OUTLYING = 25.0
 
 
@@ -57,19 +58,20 @@ def misfit_ratio(reading: Reading, noise: EdgeNoise) -> float:
     """How much more the outline deviates in whole stretches than its points' noise explains.
 
     1 for a shape that is there as described; more for one that is not quite it, or is partly
-    covered. Birge's ratio over BLOCKS stretches, each counted up to OUTLYING.
+    covered. Birge's ratio over up to BLOCKS stretches, each counted up to OUTLYING.
     """
     fit, points = reading.fit, reading.outline.points_px
     x, y = (points - points.mean(axis=0)).T
     around = fit.residuals[np.argsort(np.arctan2(y, x))]
-    blocks = np.array_split(around, BLOCKS)
+    count = min(BLOCKS, max(BLOCKS_MIN, len(around) // 4))
+    blocks = np.array_split(around, count)
     middles = np.array([np.median(block) for block in blocks])
     sizes = np.array([len(block) for block in blocks])
     scatter = np.abs(around - np.repeat(middles, sizes))
     sigma = max(noise.floor_px, 1.4826 * float(np.median(scatter)))
     # a median scatters by a quarter more than a mean
     squares = middles**2 * sizes / (1.57 * sigma**2 * noise.per_point)
-    return max(1.0, float(np.minimum(squares, OUTLYING).sum()) / (BLOCKS - 6))
+    return max(1.0, float(np.minimum(squares, OUTLYING).sum()) / (count - 6))
 
 
 def covariance(reading: Reading, shape: ObjectShape, noise: EdgeNoise) -> NDArray[np.float64]:
