@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import cast
@@ -19,6 +20,15 @@ BACKENDS: dict[str, str] = {
 STUDIOS: dict[str, str] = {
     "sim": "sim_backend.studio:open_studio",
 }
+
+PEERS: dict[str, str] = {
+    "lola": "sim_backend.speak.lola:serve",
+    "naoqi": "sim_backend.speak.naoqi:serve",
+}
+"""Simulated robots that speak a real one's protocol, for any program to connect to."""
+
+Ready = Callable[[dict[str, object]], None]
+"""Told once, when a peer can be connected to, what it serves and where."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +62,25 @@ def open_studio(backend: str, options: OpenOptions) -> Studio:
     return cast(Studio, _named(STUDIOS, backend)(options))
 
 
-def _named(table: Mapping[str, str], backend: str) -> Callable[[OpenOptions], object]:
+def speak(
+    protocol: str,
+    options: OpenOptions,
+    address: str,
+    camera: str | None,
+    stop: threading.Event,
+    ready: Ready,
+) -> None:
+    """Be a simulated robot that speaks a protocol of `PEERS`, until `stop` is set.
+
+    `options` is what the "sim" backend is told, `real_time` included. `address`: where to listen,
+    as the protocol writes it ("lola": the path of a socket; "naoqi": a url). `camera`: where to
+    serve the camera's pictures beside it; None for nowhere. Returns with everything closed. Raises
+    BackendError or ScenarioError, each with one line.
+    """
+    _named(PEERS, protocol)(options, address, camera, stop, ready)
+
+
+def _named(table: Mapping[str, str], backend: str) -> Callable[..., object]:
     if backend not in table:
         raise BackendError(
             f"there is no backend {backend!r}; there are: {', '.join(sorted(table))}"
@@ -62,4 +90,4 @@ def _named(table: Mapping[str, str], backend: str) -> Callable[[OpenOptions], ob
         module = importlib.import_module(module_name)
     except ImportError as error:
         raise BackendError(f"backend {backend!r} is not installed: {error}") from error
-    return cast(Callable[[OpenOptions], object], getattr(module, function))
+    return cast(Callable[..., object], getattr(module, function))
