@@ -11,6 +11,7 @@ from threading import RLock
 
 import numpy as np
 
+from hal.between import state_between
 from hal.errors import MotionRefusedError
 from hal.nao.joints import JOINT_INDEX
 from hal.scenario import Scenario
@@ -19,7 +20,7 @@ from sim_backend.floor import Floor
 from sim_backend.head import HeadServo
 from sim_backend.history import History
 from sim_backend.poses import Pose
-from sim_backend.sensors import Sensors, state_between
+from sim_backend.sensors import Sensors
 from sim_backend.snapshot import Snapshot, snapshot_between
 from sim_backend.walk import SimWalk
 from sim_backend.walk_model import Bearing, KinematicWalk, WalkModel

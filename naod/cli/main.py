@@ -18,6 +18,7 @@ COMMANDS: dict[str, str] = {
     "learn": "a colour model from marked pictures",
     "segment": "masks from pictures, folders or a video",
     "locate": "the object's pose from pictures",
+    "robot": "the simulated robot as a peer that speaks LoLA or NAOqi",
     "run": "the daemon",
     "ctl": "remote control of a running daemon",
     "bench": "benchmarks, with peers in the same run",
