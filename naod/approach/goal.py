@@ -6,8 +6,6 @@ import re
 from pathlib import Path
 
 import msgspec
-import numpy as np
-from numpy.typing import NDArray
 
 from naod.errors import InputError
 from naod.files import read_toml, write_toml
@@ -29,13 +27,6 @@ class Goal(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     z_m: float
     phi_rad: float
     sigma_m: float = 0.0
-
-    @property
-    def object_in_goal(self) -> NDArray[np.float64]:
-        """(3,) place of the object in the goal's base frame, metres."""
-        x = self.rho_m * np.cos(self.theta_rad)
-        y = self.rho_m * np.sin(self.theta_rad)
-        return np.array([x, y, self.z_m])
 
 
 def check_name(name: str) -> str:

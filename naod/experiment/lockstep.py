@@ -17,15 +17,11 @@ from naod.loop.equipment import Equipment, Sighting
 from naod.loop.state import LoopState
 from naod.loop.types import Commands, Label, Observation, Reply, Request, Start, Stop, Teach
 from naod.messages import EventMessage, WalkState
+from naod.walk_server.actuate import carry_out
 from naod.walk_server.arbiter import (
-    Action,
     ArbiterState,
-    Halt,
     Heartbeat,
-    MoveTo,
     Received,
-    Renew,
-    SetVelocity,
     receive,
     refused_by_robot,
     report,
@@ -129,18 +125,9 @@ class LockStep:
             item = Received(commands.walk, now_ns)
             self.arbiter = receive(self.arbiter, item, status, self.rules)
         self.arbiter, action = tick(self.arbiter, status, now_ns, self.rules)
+        if action is None:
+            return
         try:
-            self._tell(action)
+            carry_out(robot.walk, action)
         except MotionRefusedError as error:
             self.arbiter = refused_by_robot(self.arbiter, str(error))
-
-    def _tell(self, action: Action | None) -> None:
-        walk = self.robot.walk
-        if isinstance(action, SetVelocity):
-            walk.set_velocity(action.velocity, action.valid_for_s)
-        elif isinstance(action, MoveTo):
-            walk.move_to(action.step, action.valid_for_s)
-        elif isinstance(action, Renew):
-            walk.renew(action.valid_for_s)
-        elif isinstance(action, Halt):
-            walk.stop()

@@ -11,14 +11,12 @@ from dataclasses import replace
 from naod.loop.approach import approach
 from naod.loop.equipment import Equipment, Sighting
 from naod.loop.learning import gather, show_goal
-from naod.loop.looking import FRESH_NS, gaze, stand
+from naod.loop.looking import gaze, stand
 from naod.loop.outbox import Outbox
 from naod.loop.report import state_message, with_error
 from naod.loop.requests import handle
 from naod.loop.state import LoopState
 from naod.loop.types import Commands, Observation
-
-__all__ = ["FRESH_NS", "Equipment", "LoopState", "look_at", "step"]
 
 
 def step(

@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable
 
 from hal.errors import HalError
-from hal.protocols import Robot, Walk
+from hal.protocols import Robot
 from hal.types import WalkStatus
 from naod.bus import keys
 from naod.bus.bus import Bus
@@ -19,6 +19,7 @@ from naod.bus.wire import RefusedError
 from naod.messages import EventMessage, HeadCommand, StateMessage, WalkCommand, WalkState
 from naod.pace import Pace
 from naod.walk_server import arbiter
+from naod.walk_server.actuate import carry_out
 from naod.walk_server.head import HeadDesk
 from naod.walk_server.inbox import Inbox
 from naod.walk_server.latch import EstopLatch
@@ -29,13 +30,10 @@ from naod.walk_server.types import (
     ArbiterState,
     End,
     Estop,
-    Halt,
     Heartbeat,
     Input,
-    MoveTo,
     Received,
     Release,
-    SetVelocity,
     Unreadable,
 )
 
@@ -46,18 +44,6 @@ SILENT_TICKS_MAX = 25
 """A robot that has not answered for so many ticks, one second, is lost."""
 
 ANSWER_WITHIN_S = 1.0
-
-
-def carry_out(walk: Walk, action: Action) -> None:
-    """Tell the robot. Raises HalError."""
-    if isinstance(action, SetVelocity):
-        walk.set_velocity(action.velocity, action.valid_for_s)
-    elif isinstance(action, MoveTo):
-        walk.move_to(action.step, action.valid_for_s)
-    elif isinstance(action, Halt):
-        walk.stop()
-    else:
-        walk.renew(action.valid_for_s)
 
 
 class WalkServer:
