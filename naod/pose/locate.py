@@ -21,7 +21,7 @@ from naod.pose.search import (
     on_picture,
     seen_on_picture,
 )
-from naod.pose.uncertainty import EdgeNoise, covariance, point_sigma
+from naod.pose.uncertainty import EdgeNoise, parts, point_sigma
 
 PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.05, per_point=3.0, fits_px=1.0)
 """A camera whose levels follow another curve than sRGB's shows everything a tenth of a pixel wider
@@ -126,14 +126,15 @@ def _result(
     sigma_px = min(point_sigma(reading.fit, noise) for reading in found)
     found = sorted(found, key=lambda reading: misfit(reading, sigma_px))
     best = found[0]
-    total = covariance(best, shape, noise)
+    scattered, common = parts(best, shape, noise)
+    total = scattered + common
     if estimator == "paper":
         return paper_pose(best, total, shape, camera, blob.clipped)
     for other in found[1:]:
         gap = (misfit(other, sigma_px) - misfit(best, sigma_px)) / noise.per_point
         total = _with_doubt(total, best, other, gap)
     T = best.fit.T_camera_object
-    return ObjectPose(T, total, corners_px(shape, T, camera), "exact", blob.clipped)
+    return ObjectPose(T, total, corners_px(shape, T, camera), "exact", blob.clipped, total - scattered)
 
 
 def misfit(reading: Reading, sigma_px: float) -> float:

@@ -18,6 +18,7 @@ class ObjectPose:
     T_camera_object: (4, 4). covariance: (6, 6) of (translation in m, rotation vector in rad), both
     along the camera's axes, the rotation about the object's origin. corners_px: (4, 2), top left,
     top right, bottom right, bottom left as seen. clipped: sides of the picture that cut the object.
+    common: (6, 6), the part of the covariance that pictures from one place share; None if unknown.
     """
 
     T_camera_object: NDArray[np.float64]
@@ -25,6 +26,7 @@ class ObjectPose:
     corners_px: NDArray[np.float64]
     estimator: Estimator
     clipped: tuple[str, ...] = ()
+    common: NDArray[np.float64] | None = None
 
     @property
     def sigma_m(self) -> NDArray[np.float64]:

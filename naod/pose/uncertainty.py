@@ -75,9 +75,18 @@ def misfit_ratio(reading: Reading, noise: EdgeNoise) -> float:
 
 
 def covariance(reading: Reading, shape: ObjectShape, noise: EdgeNoise) -> NDArray[np.float64]:
-    """(6, 6) of translation (m) and rotation (rad) along the camera's axes.
+    """(6, 6) of translation (m) and rotation (rad) along the camera's axes."""
+    scattered, common = parts(reading, shape, noise)
+    return scattered + common
 
-    The turn of a cylinder about its own axis is fixed by convention and has no variance.
+
+def parts(
+    reading: Reading, shape: ObjectShape, noise: EdgeNoise
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The covariance in two parts: of the points' noise, new in each picture, and of whole edges.
+
+    The second is the same in every picture from one place: it does not average out. The turn of a
+    cylinder about its own axis is fixed by convention and has no variance.
     """
     fit = reading.fit
     weights = fit.weights * reading.outline.trust
@@ -87,11 +96,11 @@ def covariance(reading: Reading, shape: ObjectShape, noise: EdgeNoise) -> NDArra
         axis = np.append(np.zeros(3), fit.T_camera_object[:3, 1])
         information += 1e6 * np.trace(information[3:, 3:]) * np.outer(axis, axis)
     inverse = np.linalg.inv(information)
-    total = inverse * misfit_ratio(reading, noise)
+    scattered = inverse * misfit_ratio(reading, noise)
+    common = _shared(inverse, weighted, noise.common_px)
     for edge in np.unique(fit.edges):
-        total += _shared(inverse, weighted[fit.edges == edge], noise.edge_px)
-    total += _shared(inverse, weighted, noise.common_px)
-    return (total + total.T) / 2.0
+        common += _shared(inverse, weighted[fit.edges == edge], noise.edge_px)
+    return (scattered + scattered.T) / 2.0, (common + common.T) / 2.0
 
 
 def _shared(
