@@ -134,7 +134,9 @@ def _result(
         gap = (misfit(other, sigma_px) - misfit(best, sigma_px)) / noise.per_point
         total = _with_doubt(total, best, other, gap)
     T = best.fit.T_camera_object
-    return ObjectPose(T, total, corners_px(shape, T, camera), "exact", blob.clipped, total - scattered)
+    return ObjectPose(
+        T, total, corners_px(shape, T, camera), "exact", blob.clipped, total - scattered
+    )
 
 
 def misfit(reading: Reading, sigma_px: float) -> float:
