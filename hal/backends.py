@@ -38,6 +38,9 @@ class OpenOptions:
     The "sim" backend takes in `section`: `scenario` (a Scenario or None; its robot's version wins
     over `version`), `scenario_folder` (a Path, where the scenario's pictures are), `seed` (int) and
     `real_time` (bool).
+
+    The "lola" backend takes `socket` (path of LoLA's) and `device` (str, as
+    `hal.video.source.open_camera` takes it; "" for the robot's own camera by V4L2).
     """
 
     name: str = "nao"

@@ -9,19 +9,25 @@ from hal.protocols import Robot
 from hal.scenario import Scenario
 from hal.simulation import SimulatedRobot
 from naod.config import DaemonConfig
+from naod.errors import InputError
 from naod.files import read_toml
 from naod.pose.objects import Cylinder, ObjectShape, shape_of
 
 
 def open_configured(config: DaemonConfig, beside: Path) -> Robot:
     """Open it; paths in the configuration are `beside` the file. Raises InputError, HalError."""
+    if config.camera.device and config.robot.backend != "lola":
+        raise InputError(
+            f"camera.device: backend {config.robot.backend!r} has a camera of its own; "
+            'a device is for "lola"'
+        )
     section: dict[str, object] = {}
     if config.robot.backend == "sim":
         section = _simulation(config, beside)
     elif config.robot.backend == "naoqi":
         section = {"url": config.naoqi.url, "user": config.naoqi.user}
     else:
-        section = {"socket": config.lola.socket}
+        section = {"socket": config.lola.socket, "device": config.camera.device}
     options = OpenOptions(
         name=config.robot.name,
         version=config.robot.version,
