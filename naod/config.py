@@ -20,6 +20,7 @@ Fraction = Annotated[float, Meta(ge=0.0, le=1.0)]
 Count = Annotated[int, Meta(gt=0)]
 ROBOT_NAME = r"^[A-Za-z0-9_-]{1,32}$"
 RobotName = Annotated[str, Meta(pattern=ROBOT_NAME)]
+Width = Literal[80, 160, 320]
 
 
 class _Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -96,7 +97,7 @@ class SegmentationConfig(_Section, frozen=True):
     own shades, that the colour model is widened by; 0 leaves it as learnt.
     """
 
-    width: Literal[80, 160, 320] = 160
+    width: Width = 160
     optimiser: Literal["exact", "icm"] = "exact"
     beta: Annotated[float, Meta(ge=0.0, le=1e5)] = 1.0
     background_energy: Positive = 16.6

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from naod.bench.frames import Frame
 from naod.bench.peers.peer import Seen
 from naod.geometry.camera import PinholeCamera
-from naod.perception.blob import blob_of_mask
+from naod.perception.blob import blob_of_mask, ordered_corners
 from naod.pose.locate import locate_mask
 from naod.pose.objects import ObjectShape
 
@@ -23,13 +23,15 @@ LOST_BELOW = 0.1
 class Score(msgspec.Struct, frozen=True):
     """Of one picture. None where there is nothing to compare with, or nothing found.
 
-    `there`: the object was. `distance_error`: relative, of the pose that follows from the mask.
+    `there`: the object was. `width_error`: relative, of the box. `distance_error`: relative, of the
+    pose that follows from the mask.
     """
 
     there: bool
     found: bool
     box_iou: float | None = None
     mask_iou: float | None = None
+    width_error: float | None = None
     distance_error: float | None = None
 
 
@@ -40,6 +42,7 @@ class Summary(msgspec.Struct, frozen=True):
     box_iou: float | None
     mask_iou: float | None
     lost: float | None
+    width_error: float | None
     distance_error: float | None
     posed: float | None
     found_absent: float | None
@@ -55,16 +58,18 @@ def score(
     mask = main_region(seen, frame.mask.shape)
     truth = blob_of_mask(frame.mask)
     corners = seen.corners_px
-    box = 0.0
+    box, width = 0.0, None
     if corners is not None and truth is not None:
         box = polygon_iou(corners, truth.corners_px)
+        seen_px = width_px(ordered_corners(corners))
+        width = abs(seen_px / width_px(truth.corners_px) - 1.0)
     distance = None
     if found and shape is not None and camera is not None and frame.T_camera_object is not None:
         pose = locate_mask(mask, shape, camera)
         if pose is not None:
             true_m = float(np.linalg.norm(frame.T_camera_object[:3, 3]))
             distance = abs(float(np.linalg.norm(pose.T_camera_object[:3, 3])) / true_m - 1.0)
-    return Score(True, found, box, mask_iou(mask, frame.mask), distance)
+    return Score(True, found, box, mask_iou(mask, frame.mask), width, distance)
 
 
 def summary(scores: list[Score]) -> Summary:
@@ -72,11 +77,13 @@ def summary(scores: list[Score]) -> Summary:
     there = [s for s in scores if s.there]
     absent = [s for s in scores if not s.there]
     errors = [s.distance_error for s in there if s.distance_error is not None]
+    widths = [s.width_error for s in there if s.width_error is not None]
     return Summary(
         frames=len(scores),
         box_iou=_median([s.box_iou or 0.0 for s in there]),
         mask_iou=_median([s.mask_iou or 0.0 for s in there]),
         lost=_share([(s.box_iou or 0.0) < LOST_BELOW for s in there]),
+        width_error=_median(widths),
         distance_error=_median(errors),
         posed=_share([s.distance_error is not None for s in there]),
         found_absent=_share([s.found for s in absent]),
@@ -112,6 +119,12 @@ def mask_iou(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:
     """Shared pixels over all pixels of two masks of one size."""
     together = np.count_nonzero((a > 0) | (b > 0))
     return np.count_nonzero((a > 0) & (b > 0)) / together if together else 0.0
+
+
+def width_px(corners: NDArray[np.float64]) -> float:
+    """Of a box (4, 2) top left, top right, bottom right, bottom left."""
+    top, bottom = corners[1] - corners[0], corners[2] - corners[3]
+    return float(0.5 * (np.linalg.norm(top) + np.linalg.norm(bottom)))
 
 
 def polygon_iou(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:

@@ -16,20 +16,27 @@ from naod.errors import InputError
 BENCHES: dict[str, str] = {
     "perception": "naod.bench.perception",
     "approach": "naod.bench.approach",
-    "colours": "naod.bench.colours",
+    "rooms": "naod.bench.rooms",
 }
 
 QUICK = ("perception",)
 """Run when no name is given; the others take minutes."""
 
 
+Cell = str | float | int | None
+
+
 class Report(msgspec.Struct, frozen=True):
-    """What a benchmark found: a table for people, the same and more as data for programs."""
+    """What a benchmark found: a table for people, the same as data for programs.
+
+    `further`: more tables of the same run.
+    """
 
     name: str
     columns: tuple[str, ...]
-    rows: tuple[tuple[str | float | int | None, ...], ...]
+    rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...] = ()
+    further: tuple[Report, ...] = ()
 
 
 def bench(name: str, progress: Callable[[str], None]) -> Report:
@@ -41,7 +48,7 @@ def bench(name: str, progress: Callable[[str], None]) -> Report:
 
 
 def as_text(report: Report) -> str:
-    """The report as aligned columns."""
+    """The report and those further ones as aligned columns."""
     cells = [list(report.columns), *([_cell(value) for value in row] for row in report.rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(report.columns))]
     lines = [report.name]
@@ -51,10 +58,11 @@ def as_text(report: Report) -> str:
             for i, (text, width) in enumerate(zip(row, widths, strict=True))
         )
         lines.append("  " + "  ".join([first, *rest]).rstrip())
-    return "\n".join([*lines, *(f"  {note}" for note in report.notes)])
+    lines += [f"  {note}" for note in report.notes]
+    return "\n".join(lines) + "".join(f"\n\n{as_text(other)}" for other in report.further)
 
 
-def _cell(value: str | float | int | None) -> str:
+def _cell(value: Cell) -> str:
     if value is None:
         return "-"
     return f"{value:.3g}" if isinstance(value, float) else str(value)

@@ -1,4 +1,4 @@
-"""Ours as the daemon runs it: one Gaussian, reduced picture, the energy's exact minimum."""
+"""Ours as the daemon runs it: model, energy's exact minimum, the regions that are the object."""
 
 from __future__ import annotations
 
@@ -9,34 +9,35 @@ from numpy.typing import NDArray
 from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.config import SegmentationConfig
 from naod.perception.blob import find_blob
-from naod.perception.colour_model import ColourModel, Region, learn
+from naod.perception.colour_model import Region
+from naod.perception.learning import DEFAULT_KIND, ModelKind, learn_model
 from naod.perception.segmenter import Segmenter
+from naod.pose.objects import ObjectShape
 
 
 class Ours:
-    """The segmenter of `naod.perception` behind the interface."""
+    """The daemon's perception behind the interface."""
 
-    def __init__(self, size: tuple[int, int], settings: SegmentationConfig) -> None:
-        self._size, self._settings = size, settings
+    def __init__(
+        self,
+        size: tuple[int, int],
+        optimiser: str = "exact",
+        kind: ModelKind = DEFAULT_KIND,
+        shape: ObjectShape | None = None,
+    ) -> None:
+        self._size, self._kind, self._shape = size, kind, shape
+        self._settings = msgspec.structs.replace(SegmentationConfig(), optimiser=optimiser)
         self._segmenter: Segmenter | None = None
 
     def learn(self, yuyv: NDArray[np.uint8], region: Region) -> None:
-        """One Gaussian of the region."""
-        self.use(learn([yuyv], region))
-
-    def use(self, model: ColourModel) -> None:
-        """Take the colour as learnt by somebody else."""
+        """The colours, from one picture."""
+        model = learn_model([yuyv], region, self._kind)
         self._segmenter = Segmenter(model, self._settings, self._size)
 
     def segment(self, yuyv: NDArray[np.uint8], _motion_px: Motion = STILL) -> Seen:
-        """Labels and the largest region's box."""
+        """Labels and the object's box."""
         assert self._segmenter is not None
         segmentation = self._segmenter.segment(yuyv)
         blob = find_blob(segmentation, self._settings.pixels_min)
         corners = None if blob is None else blob.corners_px
-        return Seen(segmentation.mask, segmentation.scale, corners)
-
-
-def make(size: tuple[int, int], optimiser: str = "exact") -> Ours:
-    """With the daemon's own settings."""
-    return Ours(size, msgspec.structs.replace(SegmentationConfig(), optimiser=optimiser))
+        return Seen(segmentation.mask.copy(), segmentation.scale, corners)

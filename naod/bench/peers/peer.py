@@ -10,11 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from naod.perception.colour_model import Region
+from naod.perception.learning import DEFAULT_KIND, ModelKind
+from naod.pose.objects import ObjectShape
+
+OURS: dict[str, str] = {
+    "naod": "",
+    "table, exact": "table",
+    "one Gaussian, exact": "gaussian",
+    "one Gaussian, ICM": "gaussian icm",
+}
+"""By name: kind of model and optimiser where they are not the daemon's own."""
 
 PEERS: dict[str, str] = {
-    "exact minimum": "ours",
-    "exact minimum, blur table": "blur_table",
-    "ICM": "icm",
     "HSV threshold": "hsv",
     "CAMShift": "camshift",
     "GrabCut at 160x120": "grabcut",
@@ -25,8 +32,9 @@ PEERS: dict[str, str] = {
     "Richardson-Lucy, then exact": "richardson_lucy",
     "exact by PyMaxflow": "pymaxflow",
 }
-"""By name: the module in this package. The first is ours."""
+"""By name: the module in this package."""
 
+CONTESTANTS = (*OURS, *PEERS)
 
 Motion = tuple[float, float]
 STILL: Motion = (0.0, 0.0)
@@ -61,10 +69,21 @@ class Peer(Protocol):
         ...
 
 
-def make_peer(name: str, size: tuple[int, int]) -> Peer:
+def make_peer(name: str, size: tuple[int, int], shape: ObjectShape | None = None) -> Peer:
     """The peer of that name for pictures of (width, height).
 
-    Raises ImportError where the library that it stands for is not installed.
+    `shape`: what ours is told of the object; nobody else has a use for it. Raises ImportError where
+    the library that it stands for is not installed.
     """
+    if name in OURS:
+        return ours_of(OURS[name], size, shape)
     module = importlib.import_module(f"naod.bench.peers.{PEERS[name]}")
     return cast(Peer, module.make(size))
+
+
+def ours_of(variant: str, size: tuple[int, int], shape: ObjectShape | None) -> Peer:
+    """Ours with "kind" or "kind optimiser" of OURS."""
+    from naod.bench.peers.ours import Ours
+
+    kind, _, optimiser = variant.partition(" ")
+    return Ours(size, optimiser or "exact", cast(ModelKind, kind or DEFAULT_KIND), shape)

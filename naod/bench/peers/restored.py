@@ -13,10 +13,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from naod.bench.peers import ours
+from naod.bench.peers.ours import Ours
 from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.bench.peers.reduced import Reduced
-from naod.perception.colour_model import Region, learn
+from naod.perception.colour_model import Region
 
 Filter = Callable[[NDArray[np.float32], NDArray[np.float32]], NDArray[np.float32]]
 """From a picture (h, w, 3) and a kernel, odd square of sum 1, to the picture without it."""
@@ -31,11 +31,11 @@ class Restored:
     def __init__(self, size: tuple[int, int], undo: Filter) -> None:
         self._reduced, self._undo = Reduced(size), undo
         width, height = self._reduced.size
-        self._ours = ours.make((width + width % 2, height))
+        self._ours = Ours((width + width % 2, height), kind="gaussian")
 
     def learn(self, yuyv: NDArray[np.uint8], region: Region) -> None:
         """As ours does, from the whole picture."""
-        self._ours.use(learn([yuyv], region))
+        self._ours.learn(yuyv, region)
 
     def segment(self, yuyv: NDArray[np.uint8], motion_px: Motion = STILL) -> Seen:
         """Undo, label, box."""
