@@ -116,7 +116,12 @@ class GazeConfig(_Section, frozen=True):
 
 
 class ApproachConfig(_Section, frozen=True):
-    """Look-then-move: how far at once, and when the goal counts as reached."""
+    """Look-then-move: how far at once, and when the goal counts as reached.
+
+    `looks` are taken before each step; more, up to `looks_max` or for `looking_max_s`, while what
+    they say is less certain than the step is long. A picture in which the object moved by more
+    than `blur_max_px` is no look.
+    """
 
     estimator: Literal["exact", "paper"] = "exact"
     step_max_m: Positive = 0.25
@@ -124,9 +129,16 @@ class ApproachConfig(_Section, frozen=True):
     tolerance_m: Positive = 0.010
     tolerance_deg: Positive = 1.0
     looks: Count = 5
+    looks_max: Count = 20
+    looking_max_s: Positive = 4.0
+    blur_max_px: Positive = 10.0
     settle_s: NotNegative = 0.3
     lost_s: Positive = 5.0
     moves_max: Count = 60
+
+    def __post_init__(self) -> None:
+        if self.looks_max < self.looks:
+            raise ValueError(f"looks_max {self.looks_max} is less than looks {self.looks}")
 
 
 class WalkConfig(_Section, frozen=True):

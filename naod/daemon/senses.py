@@ -5,6 +5,7 @@ from __future__ import annotations
 from hal.errors import CameraTimeoutError, HalError
 from hal.protocols import Robot
 from hal.types import BodyState, Frame
+from naod.loop.around import around
 from naod.loop.types import Observation, Request
 from naod.messages import WalkState
 
@@ -29,7 +30,7 @@ class Senses:
         if body is None:
             return Observation(None, newest, walk, requests)
         self._last = frame.sequence
-        return Observation(frame, body, walk, requests)
+        return Observation(frame, body, walk, requests, around(self._robot.body, frame))
 
     def _frame(self) -> Frame | None:
         self.camera_error = None

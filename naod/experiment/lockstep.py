@@ -7,11 +7,12 @@ left out, messages are handed over as they are.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hal.errors import MotionRefusedError
 from hal.simulation import SimulatedRobot, Truth
 from hal.types import Frame, HeadAngles, WalkStatus
+from naod.loop.around import around
 from naod.loop.core import decide, look_at
 from naod.loop.equipment import Equipment, Sighting
 from naod.loop.state import LoopState
@@ -97,13 +98,16 @@ class LockStep:
     def settle(self) -> None:
         """After the robot was put somewhere by hand: forget what was seen, wait for the time."""
         self._next_ns = self.robot.clock.now_ns()
+        self.state = replace(self.state, target=None, looks=())
 
     def _observe(self, requests: tuple[Request, ...]) -> Observation:
         frame = self._fresh_frame()
         body = self.robot.body.at(frame.stamp_ns) if frame else None
         if body is None:
             frame, body = None, self.robot.body.latest()
-        return Observation(frame, body, self._walk_state(self.robot.walk.status()), requests)
+        beside = around(self.robot.body, frame) if frame else None
+        walk = self._walk_state(self.robot.walk.status())
+        return Observation(frame, body, walk, requests, beside)
 
     def _fresh_frame(self) -> Frame | None:
         frame = self.robot.camera.latest(FRAME_AGE_S)

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 from hal.types import PlanarMotion
+from naod.approach.certainty import Doubt, Tolerance, doubt_of, is_known, known_part
 from naod.approach.displacement import displacement, saturate
 from naod.config import ApproachConfig
 from naod.gaze.search import DWELL_S, PLACES
@@ -59,16 +60,35 @@ def fail(state: LoopState, why: str, out: Outbox) -> LoopState:
 def _decide(equipment: Equipment, state: LoopState, out: Outbox) -> LoopState:
     config = equipment.config.approach
     goal = state.goals[state.goal or ""]
-    error = displacement(combine(state.looks).ego, goal)
+    tolerance = Tolerance(config.tolerance_m, math.radians(config.tolerance_deg))
+    look = combine(state.looks)
+    error = displacement(look.ego, goal)
+    step = saturate(error, config.step_max_m, math.radians(config.turn_max_deg))
+    doubt = doubt_of(look, goal, tolerance)
     state = replace(state, error=error)
+    known = is_known(step, doubt, tolerance)
+    if not known and _may_look_on(state, config, out.now_ns):
+        return replace(state, phase="look")
     if within(error, config):
-        out.event("reached", f"goal {state.goal} reached after {state.moves} moves")
+        told = f"goal {state.goal} reached after {state.moves} moves"
+        out.event("reached", told if known else f"{told}, as far as can be seen: {_said(doubt)}")
         return replace(state, mode="track", phase="reached")
     if state.moves >= config.moves_max:
         return fail(state, f"not there after {state.moves} moves", out)
-    step = saturate(error, config.step_max_m, math.radians(config.turn_max_deg))
-    out.event("move", f"step {step.x:+.3f} m, {step.y:+.3f} m, {math.degrees(step.yaw):+.1f} deg")
+    step = step if known else known_part(step, doubt)
+    way = f"step {step.x:+.3f} m, {step.y:+.3f} m, {math.degrees(step.yaw):+.1f} deg"
+    out.event("move", f"{way}, {_said(doubt)} after {len(state.looks)} looks")
     return send_step(state, step, out)
+
+
+def _may_look_on(state: LoopState, config: ApproachConfig, now_ns: int) -> bool:
+    """Whether more looks may be taken before what is known has to do."""
+    looking_s = (now_ns - state.looks[0].stamp_ns) / 1e9
+    return len(state.looks) < config.looks_max and looking_s < config.looking_max_s
+
+
+def _said(doubt: Doubt) -> str:
+    return f"within {1e3 * doubt.sigma_m:.1f} mm and {math.degrees(doubt.sigma_rad):.2f} deg"
 
 
 def within(error: PlanarMotion, config: ApproachConfig) -> bool:

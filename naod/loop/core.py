@@ -8,8 +8,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from naod.approach.displacement import shape_kind
 from naod.loop.approach import approach
 from naod.loop.equipment import Equipment, Sighting
+from naod.loop.expectation import expected
 from naod.loop.learning import gather, show_goal
 from naod.loop.looking import gaze, stand
 from naod.loop.outbox import Outbox
@@ -17,6 +19,7 @@ from naod.loop.report import state_message, with_error
 from naod.loop.requests import handle
 from naod.loop.state import LoopState
 from naod.loop.types import Commands, Observation
+from naod.pose.prior import Prior
 
 
 def step(
@@ -31,7 +34,20 @@ def look_at(equipment: Equipment, state: LoopState, seen: Observation) -> Sighti
     """The object in the picture of this tick, if there is a picture and a model to look with."""
     if seen.frame is None or state.model is None or state.mode == "idle":
         return None
-    return equipment.sight(state.model, seen.frame, seen.body)
+    prior = _expectation(equipment, state, seen, seen.frame.stamp_ns)
+    motion = equipment.motion(seen.around, seen.walk)
+    return equipment.sight(state.model, seen.frame, seen.body, prior, motion)
+
+
+def _expectation(
+    equipment: Equipment, state: LoopState, seen: Observation, stamp_ns: int
+) -> Prior | None:
+    anchor = state.target.anchor if state.target else None
+    T_base_camera = equipment.T_base_camera(seen.body)
+    if anchor is None or T_base_camera is None:
+        return None
+    turns_to_us = shape_kind(equipment.shape) == "cylinder"
+    return expected(anchor, seen.walk, T_base_camera, stamp_ns, turns_to_us)
 
 
 def decide(
@@ -49,7 +65,7 @@ def decide(
     if seen.frame is not None:
         state = gather(replace(state, frame_ns=seen.frame.stamp_ns), seen.frame, out)
     if state.mode != "idle" and state.model is not None:
-        state = gaze(equipment, state, sighting, seen.frame is not None, out)
+        state = gaze(equipment, state, sighting, seen, out)
         state = with_error(state)
         state = show_goal(equipment, state, out)
         if state.mode == "approach":

@@ -8,28 +8,35 @@ from dataclasses import dataclass
 import numpy as np
 
 from hal.nao.joints import JOINT_INDEX
-from hal.types import BodyState, CameraName, Frame, HeadAngles, RobotInfo
+from hal.types import BodyState, CameraName, Frame, HeadAngles, PlanarMotion, RobotInfo
 from naod.config import CameraConfig, DaemonConfig
 from naod.geometry.camera import PinholeCamera, nominal_camera
 from naod.geometry.transforms import Matrix, Vector
 from naod.localisation.base_frame import T_base_camera, is_lifted
 from naod.localisation.body_model import BodyModel
-from naod.localisation.ego import EgoPose, cartesian_jacobian, ego_pose
-from naod.localisation.looks import Look, with_body_error
+from naod.localisation.camera_motion import CameraMotion, camera_motion, motion_px
+from naod.localisation.ego import EgoPose, ego_pose
+from naod.localisation.looks import Look
+from naod.localisation.placement import Placement, placed
+from naod.messages import WalkState
 from naod.perception.blob import Blob, find_blob
 from naod.perception.colour_model import ColourModel
 from naod.perception.segmenter import Segmentation, Segmenter
 from naod.pose.locate import locate
 from naod.pose.objects import ObjectShape
+from naod.pose.prior import Prior
 from naod.pose.result import Estimator, ObjectPose
+
+NEAREST_M = 0.1
 
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
     """The object in one picture, all the way to the base frame.
 
-    `ray_in_camera`: (3,) towards the blob's centre. `look` is None when no pose could be had: the
-    outline is cut off, or the feet do not say where the ground is.
+    `ray_in_camera`: (3,) towards the blob's centre. `look` and `placement` are None when no pose
+    could be had: the outline is cut off, or the feet do not say where the ground is. `blur_px`: how
+    far the object moved through the picture during its exposure.
     """
 
     stamp_ns: int
@@ -41,6 +48,8 @@ class Sighting:
     pose: ObjectPose | None
     look: Look | None
     paper: EgoPose | None
+    placement: Placement | None = None
+    blur_px: float = 0.0
 
 
 class Equipment:
@@ -76,33 +85,64 @@ class Equipment:
         """Which of the head's cameras."""
         return self.config.camera.which
 
-    def sight(self, model: ColourModel, frame: Frame, body: BodyState) -> Sighting | None:
+    def T_base_camera(self, body: BodyState) -> Matrix | None:
+        """The camera in the base frame; None while the feet do not stand."""
+        if is_lifted(body.foot_load_kg):
+            return None
+        return T_base_camera(self.body.frames(body.angles_rad), body.foot_load_kg)
+
+    def motion(
+        self, around: tuple[BodyState, BodyState] | None, walk: WalkState
+    ) -> CameraMotion | None:
+        """How the camera moved between two states of the body, if they are known."""
+        if around is None:
+            return None
+        return camera_motion(self.body, *around, PlanarMotion(*walk.velocity))
+
+    def sight(
+        self,
+        model: ColourModel,
+        frame: Frame,
+        body: BodyState,
+        prior: Prior | None = None,
+        motion: CameraMotion | None = None,
+    ) -> Sighting | None:
         """Find and localise the object in a frame; None when it is not seen."""
         segmentation = self._segmenter_for(model).segment(frame.yuyv)
         blob = find_blob(segmentation, self.config.segmentation.pixels_min)
         if blob is None:
             return None
-        frames = self.body.frames(body.angles_rad)
         ray = np.append(self.camera.normalised(np.array([blob.centre_px]))[0], 1.0)
-        estimator = self.config.approach.estimator
-        pose = self._locate(frame, blob, estimator)
-        look, paper = None, None
-        if not is_lifted(body.foot_load_kg):
-            T = T_base_camera(frames, body.foot_load_kg)
-            look = _look(frame.stamp_ns, pose, T) if pose else None
-            printed = self._locate(frame, blob, "paper") if self.compare_paper else None
-            paper = ego_pose(T @ printed.T_camera_object) if printed else None
+        pose = self._locate(frame, blob, self.config.approach.estimator)
+        blur_px = self._blur_px(frame, _point(ray, pose, prior), motion)
+        T = self.T_base_camera(body)
+        placement = None
+        if pose is not None and T is not None:
+            placement = placed(frame.stamp_ns, pose, T, motion, blur_px)
         return Sighting(
             stamp_ns=frame.stamp_ns,
             blob=blob,
             segmentation=segmentation,
             ray_in_camera=ray,
             head=head_angles(body),
-            T_torso_camera=frames.T_torso_camera,
+            T_torso_camera=self.body.frames(body.angles_rad).T_torso_camera,
             pose=pose,
-            look=look,
-            paper=paper,
+            look=placement.look() if placement else None,
+            paper=self._printed(frame, blob, T),
+            placement=placement,
+            blur_px=blur_px,
         )
+
+    def _blur_px(self, frame: Frame, point: Vector, motion: CameraMotion | None) -> float:
+        if motion is None:
+            return 0.0
+        return math.hypot(*motion_px(motion, point, self.camera, frame.exposure_s))
+
+    def _printed(self, frame: Frame, blob: Blob, T: Matrix | None) -> EgoPose | None:
+        printed = (
+            self._locate(frame, blob, "paper") if self.compare_paper and T is not None else None
+        )
+        return ego_pose(T @ printed.T_camera_object) if printed and T is not None else None
 
     def _locate(self, frame: Frame, blob: Blob, estimator: Estimator) -> ObjectPose | None:
         return locate(frame.yuyv, blob, self.shape, self.camera, estimator)
@@ -134,11 +174,8 @@ def camera_of(config: CameraConfig, info: RobotInfo) -> PinholeCamera:
     )
 
 
-def _look(stamp_ns: int, pose: ObjectPose, T: Matrix) -> Look | None:
-    """The pose carried into the base frame (equations 6 and 7), with its uncertainty."""
-    T_base_object = T @ pose.T_camera_object
-    ego = ego_pose(T_base_object)
-    J = cartesian_jacobian(T_base_object, T)
-    covariance = with_body_error(J @ pose.covariance @ J.T, ego)
-    finite = np.isfinite(covariance).all() and np.isfinite(T_base_object).all()
-    return Look(stamp_ns, ego, covariance) if finite else None
+def _point(ray: Vector, pose: ObjectPose | None, prior: Prior | None) -> Vector:
+    """Where the object is in the camera, (3,): as seen, else as expected, else a metre away."""
+    if pose is not None:
+        return pose.T_camera_object[:3, 3]
+    return ray if prior is None else ray * max(float(prior.T_camera_object[2, 3]), NEAREST_M)

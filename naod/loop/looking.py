@@ -8,10 +8,11 @@ from dataclasses import replace
 from hal.types import HeadAngles
 from naod.gaze.centring import head_towards, is_centred
 from naod.gaze.search import DWELL_S, PLACES, search_place
-from naod.localisation.looks import Look
 from naod.loop.equipment import Equipment, Sighting
+from naod.loop.expectation import anchored
 from naod.loop.outbox import Outbox
 from naod.loop.state import LoopState, Target
+from naod.loop.types import Observation
 from naod.messages import WalkState
 
 SEARCH_S = 2.5 * DWELL_S * len(PLACES)
@@ -22,6 +23,9 @@ FRESH_NS = 500_000_000
 
 def stand(state: LoopState, walk: WalkState, now_ns: int) -> LoopState:
     """Since when the robot stands still; looks from before a movement are dropped."""
+    if walk.fallen and state.target is not None:
+        # whoever picks it up puts it down elsewhere, and odometry does not know
+        state = replace(state, target=replace(state.target, anchor=None))
     if walk.moving or walk.fallen:
         return replace(state, still_since_ns=None, looks=())
     if state.still_since_ns is None:
@@ -32,25 +36,41 @@ def stand(state: LoopState, walk: WalkState, now_ns: int) -> LoopState:
 
 
 def gaze(
-    equipment: Equipment, state: LoopState, sighting: Sighting | None, fresh: bool, out: Outbox
+    equipment: Equipment,
+    state: LoopState,
+    sighting: Sighting | None,
+    seen: Observation,
+    out: Outbox,
 ) -> LoopState:
-    """Turn the head: towards what is seen, or on to the next place of the search.
-
-    `fresh` says whether a picture came at this tick at all.
-    """
+    """Turn the head: towards what is seen, or on to the next place of the search."""
     if sighting is not None:
-        return _centre(equipment, state, sighting, out)
+        return _centre(equipment, _noted(equipment, state, sighting, seen.walk, out), sighting, out)
     if state.target is not None and out.now_ns - state.target.seen_ns <= FRESH_NS:
         return state
-    if not fresh and state.search_from_ns is None:
+    if seen.frame is None and state.search_from_ns is None:
         return state
     return _search(state, out)
 
 
-def _centre(equipment: Equipment, state: LoopState, sighting: Sighting, out: Outbox) -> LoopState:
-    wanted = head_towards(
+def _noted(
+    equipment: Equipment, state: LoopState, sighting: Sighting, walk: WalkState, out: Outbox
+) -> LoopState:
+    """Remember where it was seen; a picture without its pose leaves the place known before."""
+    place = head_towards(
         sighting.ray_in_camera, sighting.T_torso_camera, sighting.head, equipment.camera_name, 1.0
     )
+    if state.search_from_ns is not None and state.target is not None:
+        out.event("found", "the object is in view again")
+    before = state.target
+    look, anchor = (before.look, before.anchor) if before else (None, None)
+    if sighting.look is not None and sighting.placement is not None:
+        look, anchor = sighting.look, anchored(sighting.placement, walk)
+    target = Target(sighting.stamp_ns, look, place, anchor, sighting.blur_px)
+    return replace(state, target=target, search_from_ns=None)
+
+
+def _centre(equipment: Equipment, state: LoopState, sighting: Sighting, out: Outbox) -> LoopState:
+    wanted = state.target.place if state.target else sighting.head
     gain = equipment.config.gaze.gain
     now = sighting.head
     tolerance = math.radians(equipment.config.gaze.tolerance_deg)
@@ -60,10 +80,6 @@ def _centre(equipment: Equipment, state: LoopState, sighting: Sighting, out: Out
             now.yaw_rad + gain * (wanted.yaw_rad - now.yaw_rad),
             now.pitch_rad + gain * (wanted.pitch_rad - now.pitch_rad),
         )
-    if state.search_from_ns is not None and state.target is not None:
-        out.event("found", "the object is in view again")
-    target = Target(sighting.stamp_ns, sighting.look or _last_look(state), wanted)
-    state = replace(state, target=target, search_from_ns=None)
     return _take_look(equipment, state, sighting, centred)
 
 
@@ -75,9 +91,11 @@ def _take_look(
     since = state.still_since_ns
     if since is None or sighting.stamp_ns < since + settle_ns:
         return state
-    if sighting.look is None or not centred or sighting.pose is None or sighting.pose.clipped:
+    look, config = sighting.look, equipment.config.approach
+    whole = sighting.pose is not None and not sighting.pose.clipped
+    if look is None or not centred or not whole or look.blur_px > config.blur_max_px:
         return replace(state, phase="centre") if state.phase == "look" else state
-    kept = (*state.looks, sighting.look)[-equipment.config.approach.looks :]
+    kept = (*state.looks, look)[-config.looks_max :]
     return replace(state, looks=kept)
 
 
@@ -93,7 +111,3 @@ def _search(state: LoopState, out: Outbox) -> LoopState:
     if state.still_since_ns is not None and searching_s < SEARCH_S:
         out.head = search_place(first, searching_s)
     return state
-
-
-def _last_look(state: LoopState) -> Look | None:
-    return state.target.look if state.target else None

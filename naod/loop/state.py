@@ -10,6 +10,7 @@ from typing import Literal
 from hal.types import Frame, HeadAngles, PlanarMotion
 from naod.approach.goal import Goal
 from naod.localisation.looks import Look
+from naod.loop.expectation import Anchor
 from naod.loop.types import Label
 from naod.perception.colour_model import ColourModel
 
@@ -59,11 +60,16 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where the object was last seen; `place` is the head's target that centres it."""
+    """Where the object was last seen; `place` is the head's target that centres it.
+
+    `anchor` is where to expect it from; `blur_px` how blurred it was.
+    """
 
     seen_ns: int
     look: Look | None
     place: HeadAngles
+    anchor: Anchor | None = None
+    blur_px: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,13 +64,14 @@ class Observation:
     """What the robot senses at one tick.
 
     `frame` is None when no picture came since the last tick; `body` is the state at the time of
-    the frame if there is one, else the newest.
+    the frame if there is one, else the newest. `around`: the body shortly before and after it.
     """
 
     frame: Frame | None
     body: BodyState
     walk: WalkState
     requests: tuple[Request, ...] = ()
+    around: tuple[BodyState, BodyState] | None = None
 
 
 @dataclass(frozen=True, slots=True)
