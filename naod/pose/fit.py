@@ -20,6 +20,8 @@ from naod.pose.foot import DEPTH_MIN_M, foot, nearest, project, tangent
 from naod.pose.objects import ObjectShape
 
 ITERATIONS = 12
+SETTLED = 1e-5
+LAST_ROW = np.array([[0.0, 0.0, 0.0, 1.0]])
 OUTLIER = 3.0
 """Robust standard deviations at which a point's weight has fallen to a quarter."""
 
@@ -99,24 +101,19 @@ def robust_weights(
 
 
 @njit(cache=True, nogil=True)
-def _turn(R: NDArray[np.float64], wx: float, wy: float, wz: float) -> NDArray[np.float64]:
-    """exp(w) R, by Rodrigues' formula."""
+def _turn(R: NDArray[np.float64], wx: float, wy: float, wz: float) -> None:
+    """R becomes exp(w) R, by Rodrigues' formula."""
     angle = math.sqrt(wx * wx + wy * wy + wz * wz)
     if angle < 1e-12:
-        return R.copy()
+        return
     x, y, z = wx / angle, wy / angle, wz / angle
     c, s = math.cos(angle), math.sin(angle)
     d = 1.0 - c
-    Q = np.empty((3, 3))
-    Q[0, 0], Q[0, 1], Q[0, 2] = c + d * x * x, d * x * y - s * z, d * x * z + s * y
-    Q[1, 0], Q[1, 1], Q[1, 2] = d * x * y + s * z, c + d * y * y, d * y * z - s * x
-    Q[2, 0], Q[2, 1], Q[2, 2] = d * x * z - s * y, d * y * z + s * x, c + d * z * z
-    out = np.zeros((3, 3))
-    for i in range(3):
-        for j in range(3):
-            for k in range(3):
-                out[i, j] += Q[i, k] * R[k, j]
-    return out
+    for j in range(3):
+        a0, a1, a2 = R[0, j], R[1, j], R[2, j]
+        R[0, j] = (c + d * x * x) * a0 + (d * x * y - s * z) * a1 + (d * x * z + s * y) * a2
+        R[1, j] = (d * x * y + s * z) * a0 + (c + d * y * y) * a1 + (d * y * z - s * x) * a2
+        R[2, j] = (d * x * z - s * y) * a0 + (d * y * z + s * x) * a1 + (c + d * z * z) * a2
 
 
 @njit(cache=True, nogil=True)
@@ -126,6 +123,7 @@ def _normal_equations(
     residuals: NDArray[np.float64],
     jacobian: NDArray[np.float64],
     weights: NDArray[np.float64],
+    trust: NDArray[np.float64],
     A: NDArray[np.float64],
     b: NDArray[np.float64],
 ) -> None:
@@ -133,9 +131,10 @@ def _normal_equations(
     b[:] = 0.0
     for i in range(residuals.size):
         for j in range(6):
-            b[j] -= weights[i] * jacobian[i, j] * residuals[i]
+            weighted = weights[i] * trust[i] * jacobian[i, j]
+            b[j] -= weighted * residuals[i]
             for k in range(j + 1):
-                A[j, k] += weights[i] * jacobian[i, j] * jacobian[i, k]
+                A[j, k] += weighted * jacobian[i, k]
     if kind == CYLINDER:
         # the turn about its own axis is not seen: hold it
         stiff = A[3, 3] + A[4, 4] + A[5, 5]
@@ -147,42 +146,46 @@ def _normal_equations(
 
 
 @njit(cache=True, nogil=True)
-def _descend(
+def descend(
     kind: int,
     half_width: float,
     half_height: float,
-    R: NDArray[np.float64],
-    t: NDArray[np.float64],
+    T: NDArray[np.float64],
     points: NDArray[np.float64],
     trust: NDArray[np.float64],
     floor: float,
     iterations: int,
+    settled: float,
     residuals: NDArray[np.float64],
     jacobian: NDArray[np.float64],
     edges: NDArray[np.int64],
     weights: NDArray[np.float64],
-) -> NDArray[np.float64]:
+) -> None:
+    """Gauss-Newton from T (3, 4), which is moved; the other arrays are as `compare` has them.
+
+    floor: least scale of a residual on the plane z = 1. settled: step, of the distance and in
+    rad / 10, below which it is done.
+    """
     A, b, step = np.empty((6, 6)), np.empty(6), np.empty(6)
+    R, t = T[:, :3].copy(), T[:, 3].copy()
     for _ in range(iterations):
         compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
         robust_weights(residuals, floor, weights)
-        _normal_equations(kind, R, residuals, jacobian, weights * trust, A, b)
+        _normal_equations(kind, R, residuals, jacobian, weights, trust, A, b)
         if not solve_symmetric(A, b, step):
             break
         # no further at once than the distance to the object allows
         size = math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2) / (0.3 * abs(t[2]))
         turn = math.sqrt(step[3] ** 2 + step[4] ** 2 + step[5] ** 2) / 0.35
         step /= max(1.0, size, turn)
-        t = t + step[:3]
+        t += step[:3]
         t[2] = max(t[2], 2.0 * DEPTH_MIN_M)
-        R = _turn(R, step[3], step[4], step[5])
-        if size < 1e-5 and turn < 1e-4:
+        _turn(R, step[3], step[4], step[5])
+        if size < settled and turn < 10.0 * settled:
             break
     compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
     robust_weights(residuals, floor, weights)
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, t
-    return T
+    T[:, :3], T[:, 3] = R, t
 
 
 def fit_outline(
@@ -202,17 +205,18 @@ def fit_outline(
     n = len(points)
     residuals, jacobian = np.empty(n), np.empty((n, 6))
     edges, weights = np.empty(n, dtype=np.int64), np.empty(n)
-    T = _descend(
+    T = np.ascontiguousarray(start[:3], dtype=np.float64).copy()
+    descend(
         *figures(shape),
-        np.ascontiguousarray(start[:3, :3]),
-        start[:3, 3].copy(),
+        T,
         np.ascontiguousarray(points),
         np.ones(n) if trust is None else trust,
         floor_px / focal_px,
         iterations,
+        SETTLED,
         residuals,
         jacobian,
         edges,
         weights,
     )
-    return Fit(T, residuals * focal_px, jacobian * focal_px, edges, weights)
+    return Fit(np.vstack([T, LAST_ROW]), residuals * focal_px, jacobian * focal_px, edges, weights)

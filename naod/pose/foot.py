@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from naod.pose.contour import ARC, CYLINDER, is_arc
 
 DEPTH_MIN_M = 0.02
+STRIDE = 5
+"""Of the corners looked at first, a divisor of their number."""
 
 
 @njit(cache=True, nogil=True)
@@ -51,7 +53,13 @@ def nearest(
     """The piece of the outline nearest to (u, v), and how far along it the foot lies."""
     best, near = np.inf, 0
     if kind == CYLINDER:
-        for k in range(pieces):
+        for k in range(0, pieces, STRIDE):
+            ru, rv = u - image[k, 0], v - image[k, 1]
+            if ru * ru + rv * rv < best:
+                best, near = ru * ru + rv * rv, k
+        middle = near
+        for step in range(-STRIDE + 1, STRIDE):
+            k = (middle + step) % pieces
             ru, rv = u - image[k, 0], v - image[k, 1]
             if ru * ru + rv * rv < best:
                 best, near = ru * ru + rv * rv, k

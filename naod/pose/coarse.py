@@ -1,0 +1,221 @@
+"""A pose at a glance: from a blob's outline alone, in a fraction of a millisecond."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from naod.geometry.camera import PinholeCamera
+from naod.perception.blob import Blob
+from naod.pose.around import lonely_share, places_around, seen_outline, visible_area
+from naod.pose.contour import CYLINDER, VERTICES, figures
+from naod.pose.explore import POINTS, READINGS, explore, near_hull, residuals_of
+from naod.pose.guesses import (
+    GUESSES_MAX,
+    cut_rectangle_guesses,
+    cylinder_guesses,
+    rectangle_guesses,
+)
+from naod.pose.lens import HEIGHT, WIDTH, focal, from_pixels, lens_of
+from naod.pose.objects import ObjectShape
+from naod.pose.prior import Prior
+from naod.pose.quadrilateral import quadrilateral
+
+POINTS_MIN = 12
+PLACES = 48
+"""Around the outline, where it is asked whether the blob ends there."""
+
+FITS_GRAINS = 0.75
+"""A point of a blob further than this from the outline belongs to something else."""
+
+EXPLAINS_GRAINS2, EXPLAINS_SUPPORT = 0.25, 0.85
+"""What a prior has to come to for nothing else to be tried."""
+
+CUT_SLACK_PX = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class CoarseFit:
+    """What a blob's outline says of the object.
+
+    `T_camera_object`: (4, 4). `misfit_grains2`: mean squared distance of the blob's outline from
+    the object's, in squares of `Blob.grain_px`, each cut at 4 grains. `support`: share of the
+    object's outline, as far as the picture shows it, where the blob ends too. `area_px`: pixels of
+    the picture the object would cover. `other`: the second reading of a tilt, if there is one.
+    """
+
+    T_camera_object: NDArray[np.float64]
+    misfit_grains2: float
+    support: float
+    area_px: float
+    other: NDArray[np.float64] | None = None
+
+
+def coarse_fit(
+    blob: Blob, shape: ObjectShape, camera: PinholeCamera, near: Prior | None = None
+) -> CoarseFit | None:
+    """The pose that explains a blob's outline best; None where nothing does.
+
+    near: where the object is expected; tried first, and alone where it explains the outline. It is
+    a fit to pixels of a mask: good for choosing between blobs and for knowing where to look.
+    """
+    points = outline_points(blob)
+    if len(points) < POINTS_MIN:
+        return None
+    poses, found = np.empty((READINGS, 3, 4)), np.empty((READINGS, FOUND))
+    hinted, hint = near is not None, np.zeros((3, 4))
+    if near is not None:
+        hint[:] = near.T_camera_object[:3]
+    box = np.ascontiguousarray(blob.corners_px, dtype=np.float64)
+    count = _fit(
+        *figures(shape), points, box, blob.grain_px, _sides(blob), lens_of(camera), hint, hinted,
+        poses, found,
+    )  # fmt: skip
+    if count == 0:
+        return None
+    readings = [np.vstack([pose, _LAST_ROW]) for pose in poses[:count]]
+    cost, support, area = (float(value) for value in found[0])
+    return CoarseFit(readings[0], cost, support, area, readings[1] if count > 1 else None)
+
+
+def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
+    """Points (n, 2) px of a blob's boundary, about so many, where it is convex.
+
+    The shapes looked for are convex; dents and holes are not theirs.
+    """
+    boundary = blob.boundary_px
+    if len(boundary) < POINTS_MIN:
+        return boundary
+    few = boundary[:: max(1, len(boundary) // (2 * most))]
+    hull = cv2.convexHull(few.astype(np.float32)).reshape(-1, 2).astype(np.float64)
+    return near_hull(few, hull, 1.5 * blob.grain_px, most)
+
+
+COST, SUPPORT, AREA = range(3)
+FOUND = 3
+_LAST_ROW = np.array([[0.0, 0.0, 0.0, 1.0]])
+_SIDES = ("left", "top", "right", "bottom")
+
+
+def _sides(blob: Blob) -> NDArray[np.bool_]:
+    return np.array([side in blob.clipped for side in _SIDES])
+
+
+@njit(cache=True, nogil=True)
+def _cut(
+    corners: NDArray[np.float64],
+    grain: float,
+    sides: NDArray[np.bool_],
+    lens: NDArray[np.float64],
+    cut: NDArray[np.bool_],
+) -> None:
+    """Which edges of a box (4, 2) px are the picture's border: top, right, bottom, left."""
+    slack = 2.0 * grain + CUT_SLACK_PX
+    for k in range(4):
+        after = (k + 1) % 4
+        x = 0.5 * (corners[k, 0] + corners[after, 0])
+        y = 0.5 * (corners[k, 1] + corners[after, 1])
+        cut[k] = (
+            (sides[0] and x < slack)
+            or (sides[1] and y < slack)
+            or (sides[2] and x > lens[WIDTH] - 1.0 - slack)
+            or (sides[3] and y > lens[HEIGHT] - 1.0 - slack)
+        )
+
+
+@njit(cache=True, nogil=True)
+def _guess(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    points: NDArray[np.float64],
+    box: NDArray[np.float64],
+    grain: float,
+    sides: NDArray[np.bool_],
+    lens: NDArray[np.float64],
+    guesses: NDArray[np.float64],
+) -> int:
+    corners, cut = np.empty((4, 2)), np.zeros(4, dtype=np.bool_)
+    from_pixels(lens, box, corners)
+    _cut(box, grain, sides, lens, cut)
+    if kind == CYLINDER:
+        return cylinder_guesses(half_width, half_height, corners, cut, guesses)
+    count = 0
+    if not sides.any() and quadrilateral(points, corners):
+        count = rectangle_guesses(half_width, half_height, corners, guesses)
+    if count == 0:
+        from_pixels(lens, box, corners)
+        count = cut_rectangle_guesses(half_width, half_height, corners, cut, guesses)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _judge(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    T: NDArray[np.float64],
+    points_px: NDArray[np.float64],
+    points: NDArray[np.float64],
+    grain_px: float,
+    lens: NDArray[np.float64],
+    found: NDArray[np.float64],
+) -> None:
+    """Cost, support and area of a pose into `found`."""
+    image, names = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
+    places, normals = np.empty((PLACES, 2)), np.empty((PLACES, 2))
+    pieces = seen_outline(kind, half_width, half_height, T, image, names)
+    count = places_around(kind, image, pieces, lens, PLACES, places, normals)
+    residuals = residuals_of(kind, half_width, half_height, T, points)
+    grain, near, total = grain_px / focal(lens), 0, 0.0
+    for k in range(residuals.size):
+        gap = min(abs(residuals[k]) / grain, 4.0)
+        near += gap < FITS_GRAINS
+        total += gap * gap
+    gaps = lonely_share(places, count, points_px, lens, grain_px)
+    found[COST] = total / residuals.size
+    found[SUPPORT] = near / residuals.size * (1.0 - gaps)
+    found[AREA] = visible_area(image, pieces, lens)
+
+
+@njit(cache=True, nogil=True)
+def _fit(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    points_px: NDArray[np.float64],
+    box: NDArray[np.float64],
+    grain_px: float,
+    sides: NDArray[np.bool_],
+    lens: NDArray[np.float64],
+    hint: NDArray[np.float64],
+    hinted: bool,
+    poses: NDArray[np.float64],
+    found: NDArray[np.float64],
+) -> int:
+    """Readings of an outline, the best first; returns how many."""
+    grain, points = grain_px / focal(lens), np.empty(points_px.shape)
+    guesses = np.empty((GUESSES_MAX, 3, 4))
+    from_pixels(lens, points_px, points)
+    count = 0
+    if hinted:
+        guesses[0] = hint
+        count = explore(kind, half_width, half_height, points, guesses, 1, grain, poses)
+    for attempt in range(2):
+        for k in range(count):
+            _judge(
+                kind, half_width, half_height, poses[k], points_px, points, grain_px, lens, found[k]
+            )
+        explained = found[0, COST] < EXPLAINS_GRAINS2 and found[0, SUPPORT] > EXPLAINS_SUPPORT
+        if attempt == 1 or (count > 0 and explained):
+            break
+        start = 1 if hinted else 0
+        start += _guess(
+            kind, half_width, half_height, points, box, grain_px, sides, lens, guesses[start:]
+        )
+        count = explore(kind, half_width, half_height, points, guesses, start, grain, poses)
+    return count
