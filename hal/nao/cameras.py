@@ -42,6 +42,9 @@ SIZES: tuple[tuple[int, int], ...] = ((160, 120), (320, 240), (640, 480), (1280,
 # rolling-shutter read-out of a frame; V6 as calibrated by B-Human 2024 (upper, lower)
 READOUT_S: dict[CameraName, float] = {"top": 0.037, "bottom": 0.045}
 
+STAMP_DELAY_S: dict[CameraName, float] = {"top": -0.039, "bottom": -0.036}
+"""From the driver's time stamp to the first row, V6, by the same calibration."""
+
 
 def nominal_pinhole(version: NaoVersion, width: int, height: int) -> PinholeFigures:
     """Focal lengths from the field of view, centre in the middle of the picture.

@@ -7,8 +7,8 @@ import time
 
 import numpy as np
 import pytest
-from video_clocks import MachineClock
 
+from hal.clock import MonotonicClock
 from hal.errors import BackendError, CameraTimeoutError
 from hal.types import Frame
 from hal.video.address import connected, parse_address
@@ -19,7 +19,7 @@ from hal.video.source import open_camera
 from hal.video.wire import REQUEST, packed, this_clock, unpacked
 
 SIZE = (8, 4)
-CLOCK = MachineClock()
+CLOCK = MonotonicClock()
 
 
 def frame(number, size=SIZE, camera="top", stamp_ns=None):
@@ -84,7 +84,7 @@ def test_next_waits_for_a_picture_of_later(served):
     early = frame(1, stamp_ns=time.monotonic_ns())
     asked, got = threading.Event(), []
 
-    class Clock(MachineClock):
+    class Clock(MonotonicClock):
         def now_ns(self):
             now = super().now_ns()
             asked.set()

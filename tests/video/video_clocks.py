@@ -1,14 +1,4 @@
-"""Clocks for cameras: the machine's, and one that only moves when somebody waits."""
-
-import time
-
-
-class MachineClock:
-    def now_ns(self):
-        return time.monotonic_ns()
-
-    def sleep_until(self, deadline_ns):
-        time.sleep(max(0, deadline_ns - time.monotonic_ns()) / 1e9)
+"""A clock that only moves when somebody waits."""
 
 
 class VirtualClock:
