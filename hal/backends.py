@@ -40,7 +40,9 @@ class OpenOptions:
     `real_time` (bool).
 
     The "lola" backend takes `socket` (path of LoLA's) and `device` (str, as
-    `hal.video.source.open_camera` takes it; "" for the robot's own camera by V4L2).
+    `hal.video.source.open_camera` takes it; "" for the robot's own camera by V4L2). It and "naoqi"
+    take `controls` too: values of the camera's controls to hold (dict of str to int, by the names
+    of `hal.video.v4l2_controls.ControlName`).
     """
 
     name: str = "nao"

@@ -18,6 +18,7 @@ Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
 Fraction = Annotated[float, Meta(ge=0.0, le=1.0)]
 Count = Annotated[int, Meta(gt=0)]
+Setting = Annotated[int, Meta(ge=0, le=1 << 20)]
 ROBOT_NAME = r"^[A-Za-z0-9_-]{1,32}$"
 RobotName = Annotated[str, Meta(pattern=ROBOT_NAME)]
 Width = Literal[80, 160, 320]
@@ -60,6 +61,8 @@ class CameraConfig(_Section, frozen=True):
     """Camera, its intrinsics in pixels if calibrated, and this head's correction.
 
     `correction_deg`: roll, pitch and yaw that turn the nominal camera into the real one.
+    `exposure`, `gain`, `white_balance`, `focus`: held, in the driver's units; without them, what
+    the camera's automatic has found at the start.
     """
 
     which: CameraName = "top"
@@ -73,6 +76,17 @@ class CameraConfig(_Section, frozen=True):
     cy: float | None = None
     distortion: tuple[float, float, float, float, float] | None = None
     correction_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    exposure: Setting | None = None
+    gain: Setting | None = None
+    white_balance: Setting | None = None
+    focus: Setting | None = None
+
+    @property
+    def controls(self) -> dict[str, int]:
+        """The values that are given, by name."""
+        names = ("exposure", "gain", "white_balance", "focus")
+        given = {name: getattr(self, name) for name in names}
+        return {name: value for name, value in given.items() if value is not None}
 
     def __post_init__(self) -> None:
         if (self.width, self.height) not in SIZES:

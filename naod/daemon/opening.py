@@ -25,9 +25,17 @@ def open_configured(config: DaemonConfig, beside: Path) -> Robot:
     if config.robot.backend == "sim":
         section = _simulation(config, beside)
     elif config.robot.backend == "naoqi":
-        section = {"url": config.naoqi.url, "user": config.naoqi.user}
+        section = {
+            "url": config.naoqi.url,
+            "user": config.naoqi.user,
+            "controls": config.camera.controls,
+        }
     else:
-        section = {"socket": config.lola.socket, "device": config.camera.device}
+        section = {
+            "socket": config.lola.socket,
+            "device": _device(config.camera.device, beside),
+            "controls": config.camera.controls,
+        }
     options = OpenOptions(
         name=config.robot.name,
         version=config.robot.version,
@@ -47,6 +55,12 @@ def shape_for(config: DaemonConfig, robot: Robot) -> ObjectShape:
     if isinstance(robot, SimulatedRobot):
         return shape_of(robot.scenario.object)
     return Cylinder()
+
+
+def _device(device: str, beside: Path) -> str:
+    """A path `beside` the file; an address is one already."""
+    is_path = device and not device.startswith(("tcp:", "unix:"))
+    return str(beside / device) if is_path else device
 
 
 def _simulation(config: DaemonConfig, beside: Path) -> dict[str, object]:
