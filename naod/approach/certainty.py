@@ -75,10 +75,10 @@ def is_known(step: PlanarMotion, doubt: Doubt, tolerance: Tolerance) -> bool:
 
 
 def known_part(step: PlanarMotion, doubt: Doubt) -> PlanarMotion:
-    """The step, each part shortened to what is expected of it.
+    """The step, each part shortened to what may be expected of it.
 
-    If what was measured is d and errs by sigma, and ways such as d are as likely forwards as back,
-    the way to be expected is d^3 / (d^2 + sigma^2).
+    Among ways that are normally distributed with deviation d, those measured as d with an error of
+    deviation sigma are d^3 / (d^2 + sigma^2) long on average.
     """
     way = _share(math.hypot(step.x, step.y), doubt.sigma_m)
     return PlanarMotion(
