@@ -45,10 +45,16 @@ class SimConfig(_Section, frozen=True):
 
 
 class NaoqiConfig(_Section, frozen=True):
-    """Where NAOqi listens."""
+    """Where NAOqi listens, and who we are there.
+
+    `password_file`: for NAOqi 2.9; without one the environment's NAOQI_PASSWORD is taken, if set.
+    `wake_up`: a walk asked for while the robot rests makes it stand up, and is itself refused.
+    """
 
     url: str = "tcp://127.0.0.1:9559"
     user: str = "nao"
+    password_file: str = ""
+    wake_up: bool = True
 
 
 class LolaConfig(_Section, frozen=True):

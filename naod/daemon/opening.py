@@ -28,6 +28,8 @@ def open_configured(config: DaemonConfig, beside: Path) -> Robot:
         section = {
             "url": config.naoqi.url,
             "user": config.naoqi.user,
+            "password_file": _file(config.naoqi.password_file, beside),
+            "wake_up": config.naoqi.wake_up,
             "controls": config.camera.controls,
         }
     else:
@@ -55,6 +57,10 @@ def shape_for(config: DaemonConfig, robot: Robot) -> ObjectShape:
     if isinstance(robot, SimulatedRobot):
         return shape_of(robot.scenario.object)
     return Cylinder()
+
+
+def _file(path: str, beside: Path) -> str:
+    return str(beside / Path(path).expanduser()) if path else ""
 
 
 def _device(device: str, beside: Path) -> str:
