@@ -121,7 +121,8 @@ class DiagnosticsMessage(Message, frozen=True):
     """`diagnostics`, 1 Hz: over the last second, and counts since start-up.
 
     `period_ms` is the mean, `jitter_ms` the standard deviation; `latency_ms` is the mean from the
-    middle of an exposure to the commands that came of it. `refused` counts messages.
+    middle of an exposure to the commands that came of it. `refused` counts messages. `blur_px`: how
+    far the object moved through the last picture during its exposure; None when it is not in view.
     """
 
     stamp_ns: int
@@ -135,6 +136,7 @@ class DiagnosticsMessage(Message, frozen=True):
     memory_mb: float
     temperature_max_c: float
     battery: float
+    blur_px: float | None = None
 
 
 class NoArguments(Message, frozen=True):

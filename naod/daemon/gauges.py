@@ -38,7 +38,13 @@ class Gauges:
         return now_ns - self._since_ns >= REPORT_NS
 
     def report(
-        self, now_ns: int, overruns: int, refused: int, temperature_max_c: float, battery: float
+        self,
+        now_ns: int,
+        overruns: int,
+        refused: int,
+        temperature_max_c: float,
+        battery: float,
+        blur_px: float | None = None,
     ) -> DiagnosticsMessage:
         """Sum up and begin the next second."""
         periods, latencies = self._periods_ms or [0.0], self._latencies_ms or [0.0]
@@ -54,6 +60,7 @@ class Gauges:
             memory_mb=memory_mb(),
             temperature_max_c=temperature_max_c,
             battery=battery,
+            blur_px=blur_px,
         )
         self._since_ns = now_ns
         self._periods_ms, self._latencies_ms = [], []

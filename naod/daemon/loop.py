@@ -19,6 +19,7 @@ from naod.daemon.gauges import Gauges
 from naod.daemon.senses import Senses
 from naod.loop.core import step
 from naod.loop.equipment import Equipment
+from naod.loop.looking import FRESH_NS
 from naod.loop.state import LoopState
 from naod.loop.types import Observation
 from naod.messages import (
@@ -177,8 +178,12 @@ class Loop:
         except HalError as error:
             self._actor.fault("body_silent", str(error), now_ns)
             return
+        target = self._state.target
+        in_view = target is not None and now_ns - target.seen_ns <= FRESH_NS
+        blur_px = target.blur_px if target is not None and in_view else None
+        refusals, warm = self._server.refusals, body.temperature_max_c
         self.diagnostics = gauges.report(
-            now_ns, pace.overruns, self._server.refusals, body.temperature_max_c, body.battery
+            now_ns, pace.overruns, refusals, warm, body.battery, blur_px
         )
         self._bus.publish(keys.DIAGNOSTICS, self.diagnostics)
 
