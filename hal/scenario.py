@@ -60,12 +60,17 @@ class SceneSection(_Section, frozen=True):
 
 
 class CameraSection(_Section, frozen=True):
-    """`noise_std` in 8-bit levels, `drop_rate` as a fraction of frames."""
+    """`noise_std` in 8-bit levels, `drop_rate` as a fraction of frames.
+
+    `mount_error_deg`: roll, pitch and yaw, about the camera's own body axes (x forward, y left,
+    z up), by which it sits askew in the head; the robot does not know of it.
+    """
 
     noise_std: NotNegative = 2.0
     blur: bool = True
     drop_rate: Fraction = 0.0
     latency_s: NotNegative = 0.05
+    mount_error_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class WalkSection(_Section, frozen=True):

@@ -16,7 +16,16 @@ from hal.errors import BackendError
 from hal.nao.cameras import MOUNTS
 from hal.nao.joints import JOINT_NAMES
 from hal.types import CameraName, NaoVersion
-from sim_backend.poses import R_BODY_OPTICAL, Matrix, inverse, quat_xyzw, rot_y, transform
+from sim_backend.poses import (
+    R_BODY_OPTICAL,
+    Matrix,
+    inverse,
+    quat_xyzw,
+    rot_x,
+    rot_y,
+    rot_z,
+    transform,
+)
 from sim_backend.quiet import pybullet
 from sim_backend.shapes import SHAPES
 from sim_backend.urdf import LINK_NAMES, urdf_text
@@ -24,10 +33,14 @@ from sim_backend.urdf import LINK_NAMES, urdf_text
 _NO_HANDS = np.array([0.0 if name.endswith("Hand") else 1.0 for name in JOINT_NAMES])
 
 
-def camera_in_head(camera: CameraName) -> Matrix:
-    """T_head_camera of a head camera, optical axes, (4, 4)."""
+def camera_in_head(
+    camera: CameraName, mount_error_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
+) -> Matrix:
+    """T_head_camera of a head camera, optical axes, (4, 4); with roll, pitch, yaw of its mount."""
     mount = MOUNTS[camera]
-    return transform(rot_y(mount.pitch_down_rad) @ R_BODY_OPTICAL, mount.origin_m)
+    roll, pitch, yaw = np.radians(mount_error_deg)
+    R_error = rot_z(yaw) @ rot_y(pitch) @ rot_x(roll)
+    return transform(rot_y(mount.pitch_down_rad) @ R_error @ R_BODY_OPTICAL, mount.origin_m)
 
 
 class Body:

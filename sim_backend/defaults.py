@@ -107,6 +107,8 @@ def _check(scenario: Scenario) -> None:
         raise ScenarioError(f'walk.model: "{scenario.walk.model}" is not available yet')
     if not scenario.camera.latency_s <= LATENCY_MAX_S:
         raise ScenarioError(f"camera.latency_s: at most {LATENCY_MAX_S:g}")
+    for angle in scenario.camera.mount_error_deg:
+        _angle("camera.mount_error_deg", angle)
     for key, value in _amounts(scenario).items():
         if not math.isfinite(value):
             raise ScenarioError(f"{key}: not a finite number")

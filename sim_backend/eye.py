@@ -40,7 +40,7 @@ class Eye:
         self._world, self._scene, self._body = world, scene, body
         self._scenario = scenario
         self._lens = nominal_pinhole(version, *size)
-        self._T_head_camera = camera_in_head(camera)
+        self._T_head_camera = camera_in_head(camera, scenario.camera.mount_error_deg)
         self._seed = seed
         self._busy = threading.Lock()
         self.camera: CameraName = camera

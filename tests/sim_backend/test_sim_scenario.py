@@ -40,6 +40,10 @@ BAD = [
     (Scenario(walk=WalkSection(model="dynamic")), r"walk\.model"),
     (Scenario(walk=WalkSection(yaw_drift=math.nan)), r"walk\.yaw_drift"),
     (Scenario(camera=CameraSection(latency_s=60.0)), r"camera\.latency_s"),
+    (
+        Scenario(camera=CameraSection(mount_error_deg=(0.0, math.nan, 0.0))),
+        r"camera\.mount_error_deg",
+    ),
     (Scenario(camera=CameraSection(noise_std=math.inf)), r"camera\.noise_std"),
     (Scenario(object=ThingSection(texture="none.png")), r"object\.texture"),
     (Scenario(distractor=(ThingSection(texture="none.png"),)), r"distractor\[0\]\.texture"),
