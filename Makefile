@@ -1,9 +1,10 @@
 PYTHON ?= python3
+CPU ?= silvermont
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: setup demo test lint bench evaluate clean
+.PHONY: setup demo test lint bench evaluate wheels clean
 
 setup: $(STAMP)
 
@@ -29,5 +30,9 @@ bench: setup
 evaluate: setup
 	$(BIN)/python -m pytest -m slow $(ARGS)
 
+wheels: setup
+	$(BIN)/python -m naod.kernels.build --cpu $(CPU)
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check -c constraints.txt -w wheels .
+
 clean:
-	rm -rf $(VENV) build dist *.egg-info ~/.cache/naod
+	rm -rf $(VENV) build dist wheels naod/kernels.tar naod/kernels.json *.egg-info ~/.cache/naod

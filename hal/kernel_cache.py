@@ -3,6 +3,8 @@
 numba renews a cached kernel when its own file changes, but not when a function it calls, in
 another file, does: after an update it would go on running the old code. So the cache's folder
 carries a digest of all files that hold kernels.
+
+Kernels that came with the package (`hal.kernel_pack`) fill a folder that is not there yet.
 """
 
 from __future__ import annotations
@@ -14,6 +16,8 @@ import sys
 import time
 from pathlib import Path
 
+from hal.kernel_pack import read_manifest, unpack
+
 _PACKAGES = ("naod", "sim_backend")
 _KEPT_S = 30 * 24 * 3600.0
 
@@ -21,15 +25,24 @@ _KEPT_S = 30 * 24 * 3600.0
 def use_own_cache() -> None:
     """Point numba to the folder; to be called before any kernel is defined.
 
-    The folder lies in `NUMBA_CACHE_DIR` if that is set, else in the user's cache.
+    The folder lies in `NUMBA_CACHE_DIR` if that is set, else in the user's cache. Where kernels
+    were shipped, numba is told to take the machine for the one they were made for, unless
+    `NUMBA_CPU_NAME` says otherwise.
     """
+    root = Path(__file__).parent.parent
     given = os.environ.get("NUMBA_CACHE_DIR")
     base = Path(given) if given else _user_cache() / "naod"
     if base.name.startswith("naod-"):
         # set by us, or by the process that started this one, which may be another checkout
         base = base.parent
-    digest = source_digest(Path(__file__).parent.parent)
+    digest = source_digest(root)
     folder = base / f"naod-{digest}"
+    manifest = read_manifest(root)
+    if manifest is not None and manifest.digest == digest:
+        os.environ.setdefault("NUMBA_CPU_NAME", manifest.cpu)
+        os.environ.setdefault("NUMBA_CPU_FEATURES", "")
+        if not folder.exists():
+            unpack(root, folder)
     _remove_old(base, folder)
     os.environ["NUMBA_CACHE_DIR"] = str(folder)
     if "numba" in sys.modules:

@@ -16,7 +16,7 @@ from hal.types import BodyState, Frame
 from naod.geometry.camera import PinholeCamera
 from naod.loop.equipment import Equipment, Sighting
 from naod.perception.colour_model import Region
-from naod.perception.learning import learn_model
+from naod.perception.learning import DEFAULT_KIND, ModelKind, learn_model
 from naod.pose.objects import Cylinder, ObjectShape
 
 log = logging.getLogger(__name__)
@@ -42,16 +42,22 @@ def warm_up(equipment: Equipment, robot: Robot) -> None:
         log.warning("the painted object was not localised: the first look may take longer")
 
 
-def rehearse(equipment: Equipment, body: BodyState, writeable: bool = False) -> Sighting | None:
+def rehearse(
+    equipment: Equipment,
+    body: BodyState,
+    writeable: bool = False,
+    kind: ModelKind = DEFAULT_KIND,
+) -> Sighting | None:
     """What is seen of an object painted in the middle of the picture, a quarter of its height.
 
     `writeable` is as in the camera's own pictures: kernels are compiled anew for the other kind.
+    `kind`: of the model that is learnt.
     """
     camera, region = equipment.camera, _silhouette(equipment.shape, equipment.camera)
     yuyv = _painted(camera.width, camera.height, region)
     yuyv.flags.writeable = writeable
     frame = Frame(body.stamp_ns, yuyv, equipment.camera_name, 0.01, 0)
-    return equipment.sight(learn_model([yuyv, yuyv], region), frame, body)
+    return equipment.sight(learn_model([yuyv, yuyv], region, kind), frame, body)
 
 
 def _silhouette(shape: ObjectShape, camera: PinholeCamera) -> Region:

@@ -1,0 +1,1 @@
+"""Compiling every kernel beforehand, for the processor of a robot."""
