@@ -15,6 +15,8 @@ from hal.types import CameraName, NaoVersion
 
 BACKENDS: dict[str, str] = {
     "sim": "sim_backend.backend:open_robot",
+    "lola": "hal.lola.robot:open_robot",
+    "naoqi": "hal.naoqi.robot:open_robot",
 }
 
 STUDIOS: dict[str, str] = {
@@ -43,6 +45,12 @@ class OpenOptions:
     `hal.video.source.open_camera` takes it; "" for the robot's own camera by V4L2). It and "naoqi"
     take `controls` too: values of the camera's controls to hold (dict of str to int, by the names
     of `hal.video.v4l2_controls.ControlName`).
+
+    The "lola" backend takes `socket`, and when the robot moves by itself: `stand_up` ("button": by
+    the chest button only, "start": once it is connected) and `sit_after_s` without a client.
+
+    The "naoqi" backend takes `url`, `user`, `password_file` ("": the environment's NAOQI_PASSWORD,
+    or no login) and `wake_up` (bool: whether a walk may wake up a robot that rests).
     """
 
     name: str = "nao"

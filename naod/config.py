@@ -58,9 +58,14 @@ class NaoqiConfig(_Section, frozen=True):
 
 
 class LolaConfig(_Section, frozen=True):
-    """Where LoLA listens."""
+    """Where LoLA listens, and when the robot stands up and sits down by itself.
+
+    `stand_up`: "button" holds the pose it is found in until the chest button is pressed.
+    """
 
     socket: str = "/tmp/robocup"
+    stand_up: Literal["button", "start"] = "button"
+    sit_after_s: Positive = 10.0
 
 
 class CameraConfig(_Section, frozen=True):

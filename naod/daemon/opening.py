@@ -35,6 +35,8 @@ def open_configured(config: DaemonConfig, beside: Path) -> Robot:
     else:
         section = {
             "socket": config.lola.socket,
+            "stand_up": config.lola.stand_up,
+            "sit_after_s": config.lola.sit_after_s,
             "device": _device(config.camera.device, beside),
             "controls": config.camera.controls,
         }
