@@ -12,7 +12,7 @@ from hal.backends import OpenOptions
 from hal.errors import BackendError
 from hal.scenario import Scenario
 from hal.simulation import SimulatedRobot, Truth
-from hal.types import BodyState, HeadAngles, PlanarMotion, RobotInfo
+from hal.types import BodyState, CameraName, HeadAngles, PlanarMotion, RobotInfo
 from sim_backend.body import Body
 from sim_backend.camera import SimCamera
 from sim_backend.clocks import LockStepClock, RealClock, WorldClock
@@ -70,18 +70,26 @@ class SimRobot:
             _warm_up(self._scene)
         real_ns = time.monotonic_ns if told.real_time else None
         self._world = World(told.scenario, told.version, told.seed, real_ns)
-        size = (options.width, options.height)
-        self._eye = Eye(
-            self._world, self._scene, self._simulated, told.scenario, told.version,
-            options.camera, size, options.fps, told.seed,
-        )  # fmt: skip
+        self._version, self._seed = told.version, told.seed
+        self._eye = self._open_eye(options.camera, (options.width, options.height), options.fps)
         self._clock: WorldClock
         self._clock = RealClock(self._world) if told.real_time else LockStepClock(self._world)
-        self._camera = SimCamera(
-            self._eye, self._world, self._clock, told.scenario.camera, options.fps, told.seed
-        )
+        self._camera = self._camera_of(self._eye, options.fps)
         self._head = SimHead(self._world)
         self._body = SimBodySensors(self._world, self._clock)
+
+    def _open_eye(self, camera: CameraName, size: tuple[int, int], fps: int) -> Eye:
+        return Eye(
+            self._world, self._scene, self._simulated, self._scenario, self._version,
+            camera, size, fps, self._seed,
+        )  # fmt: skip
+
+    def _camera_of(self, eye: Eye, fps: int) -> SimCamera:
+        return SimCamera(eye, self._world, self._clock, self._scenario.camera, fps, self._seed)
+
+    def open_camera(self, camera: CameraName, size: tuple[int, int], fps: int) -> SimCamera:
+        """One more camera of this head, beside the one that was asked for."""
+        return self._camera_of(self._open_eye(camera, size, fps), fps)
 
     @property
     def info(self) -> RobotInfo:
