@@ -9,21 +9,18 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.components import (
-    AREA,
-    BOTTOM,
-    LEFT,
-    RIGHT,
-    SUM_X,
-    SUM_Y,
-    TOP,
-    boundary,
-    components,
-)
+from naod.perception.box import Box, breaks_of_labels, empty_box, measure_box
+from naod.perception.components import components
+from naod.perception.runs import AREA, BOTTOM, LEFT, RIGHT, SUM_X, SUM_Y, TOP
 from naod.perception.segmenter import Segmentation
 
 PIXELS_MIN = 12
 """Reduced pixels below which a region is no object."""
+
+_SIDES = ("left", "right", "top", "bottom")
+_CLIPPED = tuple(
+    tuple(side for bit, side in enumerate(_SIDES) if cut >> bit & 1) for cut in range(16)
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +45,13 @@ def find_blob(segmentation: Segmentation, pixels_min: int = PIXELS_MIN) -> Blob 
     """The region of touching pixels that has most of the object's colour.
 
     None if none has `pixels_min`. Without the segmentation's differences it is the largest one.
+    A segmenter has looked for it already, with its own `pixels_min`.
     """
+    sight = segmentation.sight
+    if sight is not None and sight.pixels_min == pixels_min:
+        if sight.pixels == 0:
+            return None
+        return _blob(sight.box, sight.points, sight.cut, sight.pixels, segmentation.scale)
     labels, table = components(segmentation.mask)
     if not len(table) or table[:, AREA].max() < pixels_min:
         return None
@@ -101,18 +104,48 @@ def blob_of(
 
     `grain_px`: full pixels per pixel of `labels`.
     """
-    rows = table[wanted[1:]]
-    area = rows[:, AREA].sum()
-    centre = rows[:, [SUM_X, SUM_Y]].sum(axis=0) / area
-    points = boundary(labels, wanted)
+    height, width = labels.shape
+    extent = _together(table, wanted)
+    box = empty_box(height, width)
+    points, cut = _measured(labels, wanted, extent, box, float(grain_px))
+    return _blob(box, points, cut, int(extent[AREA]), grain_px)
+
+
+def _blob(box: Box, points: int, cut: int, pixels: int, grain_px: float) -> Blob:
     return Blob(
-        centre_px=_full(centre, grain_px),
-        area_px=float(area) * grain_px**2,
-        corners_px=_full(_box(points, rows, labels.shape), grain_px),
-        boundary_px=_full(points, grain_px),
+        centre_px=box.centre,
+        area_px=pixels * grain_px**2,
+        corners_px=box.corners,
+        boundary_px=box.boundary[:points],
         grain_px=grain_px,
-        clipped=_clipped(rows, labels.shape),
+        clipped=_CLIPPED[cut],
     )
+
+
+def _together(table: NDArray[np.int64], wanted: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """One line of a table of regions for several of them."""
+    rows = table[wanted[1:]]
+    extent = np.zeros(table.shape[1], dtype=np.int64)
+    for column in (AREA, SUM_X, SUM_Y):
+        extent[column] = rows[:, column].sum()
+    for column in (LEFT, TOP):
+        extent[column] = rows[:, column].min()
+    for column in (RIGHT, BOTTOM):
+        extent[column] = rows[:, column].max()
+    return extent
+
+
+@njit(cache=True, nogil=True)
+def _measured(
+    labels: NDArray[np.int32],
+    wanted: NDArray[np.bool_],
+    extent: NDArray[np.int64],
+    box: Box,
+    grain_px: float,
+) -> tuple[int, int]:
+    breaks_of_labels(labels, wanted, extent, box)
+    height, width = labels.shape
+    return measure_box(box, extent, height, width, grain_px)
 
 
 UP = np.array([0.0, -1.0])
@@ -136,30 +169,3 @@ def ordered_corners(
     around = corners[np.argsort(np.arctan2(offset[:, 1], offset[:, 0]))]
     middles = (around + np.roll(around, -1, axis=0)) / 2.0
     return np.roll(around, -int(np.argmax(middles @ up)), axis=0)
-
-
-def _full(points: NDArray[np.float64], grain_px: float) -> NDArray[np.float64]:
-    """Mask pixels to full pixels: a mask pixel's centre is that of the block it stands for."""
-    return (points + 0.5) * grain_px - 0.5
-
-
-def _box(
-    points: NDArray[np.float64], rows: NDArray[np.int64], shape: tuple[int, ...]
-) -> NDArray[np.float64]:
-    """Oriented box of the region in mask pixels, its cut sides included."""
-    left, right = rows[:, LEFT].min() - 0.5, rows[:, RIGHT].max() + 0.5
-    top, bottom = rows[:, TOP].min() - 0.5, rows[:, BOTTOM].max() + 0.5
-    if len(points) < 3 or len(_clipped(rows, shape)) == 4:
-        return np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
-    return oriented_box(points)
-
-
-def _clipped(rows: NDArray[np.int64], shape: tuple[int, ...]) -> tuple[str, ...]:
-    height, width = shape
-    cut = {
-        "left": rows[:, LEFT].min() == 0,
-        "right": rows[:, RIGHT].max() == width - 1,
-        "top": rows[:, TOP].min() == 0,
-        "bottom": rows[:, BOTTOM].max() == height - 1,
-    }
-    return tuple(side for side, is_cut in cut.items() if is_cut)

@@ -1,4 +1,4 @@
-"""Connected regions of a mask, in one pass and a half."""
+"""Connected regions of a mask as a picture of labels and a table."""
 
 from __future__ import annotations
 
@@ -6,99 +6,58 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-AREA, LEFT, RIGHT, TOP, BOTTOM, SUM_X, SUM_Y = range(7)
-"""Columns of the table that `components` fills."""
+from naod.perception.optimum_field import CELLS_A_WORD, OBJECT
+from naod.perception.runs import (
+    AREA,
+    BOTTOM,
+    LEFT,
+    RIGHT,
+    SUM_X,
+    SUM_Y,
+    TOP,
+    Runs,
+    empty_runs,
+    find_runs,
+)
+
+__all__ = ["AREA", "BOTTOM", "LEFT", "RIGHT", "SUM_X", "SUM_Y", "TOP", "components"]
+
+_NO_DIFFERENCES = np.zeros((0, 0), dtype=np.int32)
 
 
 @njit(cache=True, nogil=True)
-def _root(parents: NDArray[np.int32], label: int) -> int:
-    while parents[label] != label:
-        parents[label] = parents[parents[label]]
-        label = parents[label]
-    return label
+def pad(mask: NDArray[np.uint8], codes: NDArray[np.uint8], hot: NDArray[np.uint8]) -> None:
+    """Codes of OBJECT for what is not zero, and which rows have any; the border stays."""
+    for i in range(mask.shape[0]):
+        line, out = mask[i], codes[i + 1]
+        anything = np.uint8(0)
+        for j in range(line.size):
+            anything |= line[j]
+            out[j] = OBJECT if line[j] else 0
+        hot[i + 1] = anything
 
 
 @njit(cache=True, nogil=True)
-def _join(parents: NDArray[np.int32], a: int, b: int) -> int:
-    a, b = _root(parents, a), _root(parents, b)
-    low, high = min(a, b), max(a, b)
-    parents[high] = low
-    return low
-
-
-@njit(cache=True, nogil=True)
-def _provisional(
-    mask: NDArray[np.uint8], labels: NDArray[np.int32], parents: NDArray[np.int32]
-) -> int:
-    """First pass: a label per run of touching pixels, meetings noted in `parents`."""
-    height, width = mask.shape
-    count = 0
-    for i in range(height):
-        for j in range(width):
-            labels[i, j] = 0
-            if mask[i, j] == 0:
-                continue
-            found = 0
-            if j > 0:
-                found = labels[i, j - 1]
-            if i > 0:
-                for k in range(max(0, j - 1), min(width, j + 2)):
-                    other = labels[i - 1, k]
-                    if other not in (0, found):
-                        found = other if found == 0 else _join(parents, found, other)
-            if found == 0:
-                count += 1
-                parents[count] = count
-                found = count
-            labels[i, j] = found
-    return count
-
-
-@njit(cache=True, nogil=True)
-def _measure(
-    labels: NDArray[np.int32], parents: NDArray[np.int32], table: NDArray[np.int64], names: int
-) -> None:
-    """Second pass: final labels, and area, box and coordinate sums of each."""
-    height, width = labels.shape
-    for k in range(names + 1):
-        table[k, AREA] = table[k, SUM_X] = table[k, SUM_Y] = 0
-        table[k, LEFT], table[k, RIGHT] = width, -1
-        table[k, TOP], table[k, BOTTOM] = height, -1
-    for i in range(height):
-        for j in range(width):
-            k = labels[i, j]
-            if k == 0:
-                continue
-            k = parents[k]
-            labels[i, j] = k
-            table[k, AREA] += 1
-            table[k, LEFT] = min(table[k, LEFT], j)
-            table[k, RIGHT] = max(table[k, RIGHT], j)
-            table[k, TOP] = min(table[k, TOP], i)
-            table[k, BOTTOM] = i
-            table[k, SUM_X] += j
-            table[k, SUM_Y] += i
+def paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
+    """Write the regions' names where their runs are."""
+    for run in range(count):
+        labels[runs.rows[run], runs.starts[run] : runs.ends[run] + 1] = runs.names[run]
 
 
 @njit(cache=True, nogil=True)
 def _components(
     mask: NDArray[np.uint8],
+    rows: NDArray[np.uint8],
+    words: NDArray[np.uint64],
+    differences: NDArray[np.int32],
+    runs: Runs,
     labels: NDArray[np.int32],
-    parents: NDArray[np.int32],
-    table: NDArray[np.int64],
 ) -> int:
-    count = _provisional(mask, labels, parents)
-    names = 0
-    parents[0] = 0
-    for k in range(1, count + 1):
-        if parents[k] == k:
-            names += 1
-            parents[k] = names
-        else:
-            # a parent is always smaller, so it has its final name already
-            parents[k] = parents[parents[k]]
-    _measure(labels, parents, table, names)
-    return names
+    hot = np.zeros(rows.shape[0], dtype=np.uint8)
+    pad(mask, rows, hot)
+    count, regions = find_runs(rows, words, hot, differences, runs)
+    paint(runs, count, labels)
+    return regions
 
 
 def components(mask: NDArray[np.uint8]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
@@ -108,37 +67,10 @@ def components(mask: NDArray[np.uint8]) -> tuple[NDArray[np.int32], NDArray[np.i
     the columns AREA, LEFT, RIGHT, TOP, BOTTOM, SUM_X, SUM_Y in pixels.
     """
     height, width = mask.shape
-    labels = np.empty((height, width), dtype=np.int32)
-    most = ((height + 1) // 2) * ((width + 1) // 2) + 1
-    parents = np.empty(most, dtype=np.int32)
-    table = np.empty((most, 7), dtype=np.int64)
-    names = _components(np.ascontiguousarray(mask, dtype=np.uint8), labels, parents, table)
-    return labels, table[1 : names + 1]
-
-
-@njit(cache=True, nogil=True)
-def _cracks(labels: NDArray[np.int32], wanted: NDArray[np.bool_], out: NDArray[np.float64]) -> int:
-    height, width = labels.shape
-    count = 0
-    for i in range(height):
-        for j in range(width):
-            inside = wanted[labels[i, j]]
-            if j + 1 < width and wanted[labels[i, j + 1]] != inside:
-                out[count, 0], out[count, 1] = j + 0.5, i
-                count += 1
-            if i + 1 < height and wanted[labels[i + 1, j]] != inside:
-                out[count, 0], out[count, 1] = j, i + 0.5
-                count += 1
-    return count
-
-
-def boundary(labels: NDArray[np.int32], wanted: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Where the regions with `wanted[label]` end inside the picture: (n, 2) x, y in its pixels.
-
-    Points lie half-way between a pixel inside and its neighbour outside. A straight edge passes
-    through their mean; the picture's own border is no edge.
-    """
-    height, width = labels.shape
-    out = np.empty((2 * height * width, 2), dtype=np.float64)
-    count = _cracks(labels, wanted, out)
-    return out[:count].copy()
+    labels = np.zeros((height, width), dtype=np.int32)
+    pitch = -(-(width + 1) // CELLS_A_WORD) * CELLS_A_WORD
+    rows = np.zeros((height + 2, pitch), dtype=np.uint8)
+    runs = empty_runs(height, width)
+    given = np.ascontiguousarray(mask, dtype=np.uint8)
+    regions = _components(given, rows, rows.view(np.uint64), _NO_DIFFERENCES, runs, labels)
+    return labels, runs.table[1 : regions + 1, :7]

@@ -1,7 +1,7 @@
 """The exact minimum of the two-label Potts energy (equation 3), which is a minimum cut.
 
 Greig, Porteous and Seheult 1989. Most pixels never get near the cut: their own difference decides,
-or the bounds of `optimum_bracket` do.
+or the bounds of `optimum_bracket` do. Rows that are background altogether are not looked at again.
 """
 
 from __future__ import annotations
@@ -12,10 +12,33 @@ from numpy.typing import NDArray
 
 from naod.perception.optimum_bracket import bracket
 from naod.perception.optimum_cut import cut
-from naod.perception.optimum_field import WAVES, Field, empty_field
+from naod.perception.optimum_field import WAVES, Field, empty_field, needs_of
 
 BETA_MAX = 1 << 27
 """Twelve times as much, the most that a cell of the cut can hold, is still an int32."""
+
+
+@njit(cache=True, nogil=True)
+def _write_row(
+    codes: NDArray[np.uint8], differences: NDArray[np.int32], row: NDArray[np.uint8]
+) -> tuple[int, int]:
+    """Labels of one row; the sum of the object's differences, and labels that change in it."""
+    total = broken = 0
+    for j in range(row.size):
+        row[j] = codes[j] >> 1 & 1
+    for j in range(row.size):
+        total += differences[j] if row[j] else 0
+    for j in range(row.size - 1):
+        broken += row[j] != row[j + 1]
+    return total, broken
+
+
+@njit(cache=True, nogil=True)
+def _changes(codes: NDArray[np.uint8], below: NDArray[np.uint8], width: int) -> int:
+    broken = 0
+    for j in range(width):
+        broken += codes[j] != below[j]
+    return broken
 
 
 @njit(cache=True, nogil=True)
@@ -26,25 +49,34 @@ def _write(
     height, width = labels.shape
     total = broken = 0
     for i in range(height):
-        codes, below, row = field.rows[i + 1], field.rows[i + 2], labels[i]
-        for j in range(width):
-            row[j] = codes[j] >> 1 & 1
-        for j in range(width):
-            total += differences[i, j] if row[j] else 0
-        for j in range(width - 1):
-            broken += row[j] != row[j + 1]
-        if i + 1 < height:
-            for j in range(width):
-                broken += codes[j] != below[j]
+        hot = field.hot[i + 1]
+        if hot:
+            own, across = _write_row(field.rows[i + 1], differences[i], labels[i])
+            total += own
+            broken += across
+        else:
+            labels[i] = 0
+        if i + 1 < height and (hot or field.hot[i + 2]):
+            broken += _changes(field.rows[i + 1], field.rows[i + 2], width)
     return total + beta * broken
+
+
+@njit(cache=True, nogil=True)
+def solve(
+    field: Field, differences: NDArray[np.int32], beta: int, labels: NDArray[np.uint8]
+) -> int:
+    """The minimum from the needs; its energy."""
+    cut(field, beta, bracket(field, differences))
+    return _write(field, differences, beta, labels)
 
 
 @njit(cache=True, nogil=True)
 def _minimise(
     field: Field, differences: NDArray[np.int32], beta: int, labels: NDArray[np.uint8]
 ) -> int:
-    cut(field, beta, bracket(field, differences, beta))
-    return _write(field, differences, beta, labels)
+    for i in range(labels.shape[0]):
+        needs_of(differences[i], np.int32(beta), field.needs[i + 1])
+    return solve(field, differences, beta, labels)
 
 
 class Optimum:

@@ -4,7 +4,8 @@ The energy is submodular. From all-background, a cell that lowers the energy by 
 does so next to any greater object too; from all-object, a cell that does not raise the energy by
 leaving may leave any smaller object. Both movements, each one-way, enclose the least minimum, and
 where they meet its label is known. They run together: an open cell is background in one and object
-in the other.
+in the other. All rows are asked at once a few times; cells that stay open are then asked again only
+when a neighbour has been decided.
 """
 
 from __future__ import annotations
@@ -14,9 +15,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.optimum_field import (
+    ALWAYS,
     BACKGROUND,
+    BORDER,
     CANDIDATES,
     CELLS_A_WORD,
+    NEVER,
+    NOWHERE,
     OBJECT,
     OPEN,
     UNDECIDED,
@@ -26,17 +31,72 @@ from naod.perception.optimum_field import (
 )
 
 _OBJECT_BITS = np.uint64(0x0202020202020202)
+_ANY_BITS = np.uint64(0x2222222222222222)
 _DIGIT = np.uint64(4)
 _NONE = np.uint64(0)
 
+ROUNDS = 8
+"""Of questions to all rows at once; an even number. The cells that would need more are few."""
+
 
 @njit(cache=True, nogil=True)
-def _classify(differences: NDArray[np.int32], limit: np.int32, codes: NDArray[np.uint8]) -> None:
-    """One row: a difference that four neighbours cannot outweigh decides by itself."""
-    for j in range(differences.size):
-        difference = differences[j]
-        code = np.uint8(OPEN) if difference < limit else np.uint8(BACKGROUND)
-        codes[j] = np.uint8(OBJECT) if difference < -limit else code
+def _open(field: Field) -> None:
+    """Codes of all cells from their needs, and which rows have more than background."""
+    # one loop over all rows: a row is too short for wide vectors
+    codes, needs = field.codes, field.needs.reshape(-1)
+    for k in range(codes.size):
+        need = needs[k]
+        open_bit = np.uint8(need < np.uint8(NEVER)) << np.uint8(5)
+        object_bit = np.uint8(need == np.uint8(ALWAYS)) << np.uint8(1)
+        border = np.uint8(need == np.uint8(NOWHERE)) * np.uint8(BORDER)
+        codes[k] = np.uint8(open_bit | object_bit | border)
+    for row in range(field.hot.size):
+        words, seen = field.words[row], _NONE
+        for k in range(words.size):
+            seen |= words[k]
+        field.hot[row] = np.uint8(seen & _ANY_BITS != _NONE)
+
+
+@njit(cache=True, nogil=True)
+def _ask(
+    codes: NDArray[np.uint8],
+    needs: NDArray[np.uint8],
+    out: NDArray[np.uint8],
+    first: int,
+    last: int,
+    pitch: int,
+) -> None:
+    """Decide what can be decided between two cells from the codes as they are, into `out`."""
+    left, right = codes[first - 1 : last - 1], codes[first + 1 : last + 1]
+    up, down = codes[first - pitch : last - pitch], codes[first + pitch : last + pitch]
+    own, need, new = codes[first:last], needs[first:last], out[first:last]
+    for k in range(own.size):
+        near = np.uint8(np.uint8(left[k] + right[k]) + np.uint8(up[k] + down[k]))
+        is_open = np.uint8(own[k] == np.uint8(OPEN))
+        leaves = np.uint8(np.uint8(near >> np.uint8(4)) < need[k]) & is_open
+        joins = np.uint8(np.uint8(near & np.uint8(15)) >= need[k]) & is_open
+        # an open cell that joins is not one that leaves: its lower sum is never above its upper one
+        new[k] = np.uint8(own[k] + np.uint8(joins << np.uint8(1)) - np.uint8(leaves << np.uint8(5)))
+
+
+@njit(cache=True, nogil=True)
+def _ask_all(field: Field) -> None:
+    """ROUNDS of questions to all rows from the first to the last that are not background."""
+    top, bottom = 0, field.hot.size - 1
+    while top < bottom and field.hot[top] == 0:
+        top += 1
+    while bottom > top and field.hot[bottom] == 0:
+        bottom -= 1
+    if field.hot[top] == 0:
+        return
+    pitch = field.rows.shape[1]
+    first, last = top * pitch, (bottom + 1) * pitch
+    field.asked[first - pitch : first] = field.codes[first - pitch : first]
+    field.asked[last : last + pitch] = field.codes[last : last + pitch]
+    needs = field.needs.reshape(-1)
+    for _ in range(ROUNDS // 2):
+        _ask(field.codes, needs, field.asked, first, last, pitch)
+        _ask(field.asked, needs, field.codes, first, last, pitch)
 
 
 @njit(cache=True, nogil=True)
@@ -57,17 +117,15 @@ def _collect(field: Field, differences: NDArray[np.int32], row: int, count: int)
 
 
 @njit(cache=True, nogil=True)
-def _verdict(field: Field, beta: int, cell: np.uint64) -> np.uint8:
+def _verdict(field: Field, needs: NDArray[np.uint8], cell: np.uint64) -> np.uint8:
     """OBJECT or BACKGROUND where both bounds agree on the cell, given its neighbours, else OPEN."""
-    near = neighbourhood(field, cell)
-    joins = field.differences[cell] + beta * (4 - (near & 15)) < 0
-    leaves = field.differences[cell] + beta * (4 - (near >> 4)) >= 0
-    code = np.uint8(BACKGROUND) if leaves else np.uint8(OPEN)
-    return np.uint8(OBJECT) if joins else code
+    near, need = neighbourhood(field, cell), needs[cell]
+    code = np.uint8(BACKGROUND) if (near >> 4) < need else np.uint8(OPEN)
+    return np.uint8(OBJECT) if (near & 15) >= need else code
 
 
 @njit(cache=True, nogil=True)
-def _spread(field: Field, beta: int, pending: int) -> None:
+def _spread(field: Field, needs: NDArray[np.uint8], pending: int) -> None:
     """Ask again around every pending cell until nothing more follows."""
     while pending > 0:
         pending -= 1
@@ -75,24 +133,25 @@ def _spread(field: Field, beta: int, pending: int) -> None:
         for step in sides(field):
             cell = centre + step
             if field.codes[cell] == OPEN:
-                code = _verdict(field, beta, cell)
+                code = _verdict(field, needs, cell)
                 field.codes[cell] = code
                 field.pending[pending] = cell
                 pending += code != OPEN
 
 
 @njit(cache=True, nogil=True)
-def _decide(field: Field, beta: int, candidates: int) -> int:
+def _decide(field: Field, candidates: int) -> int:
     """Both movements over the candidates; keeps those still open and returns their number."""
+    needs = field.needs.reshape(-1)
     pending = left = 0
     for k in range(candidates):
         cell = np.uint64(field.candidates[k])
-        code = _verdict(field, beta, cell)
+        code = _verdict(field, needs, cell)
         field.codes[cell] = code
         field.pending[pending] = field.candidates[left] = cell
         pending += code != OPEN
         left += code == OPEN
-    _spread(field, beta, pending)
+    _spread(field, needs, pending)
     candidates, left = left, 0
     for k in range(candidates):
         cell = np.uint64(field.candidates[k])
@@ -102,17 +161,18 @@ def _decide(field: Field, beta: int, candidates: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def bracket(field: Field, differences: NDArray[np.int32], beta: int) -> int:
-    """Codes of all cells from (h, w) differences; open ones are the first of the candidates.
+def bracket(field: Field, differences: NDArray[np.int32]) -> int:
+    """Decide codes of all cells from their needs; open ones are the first of the candidates.
 
-    Returns their number.
+    `differences` is (h, w). Returns the number of cells still open.
     """
-    height, width = differences.shape
+    _open(field)
+    _ask_all(field)
     count = 0
-    for i in range(height):
-        _classify(differences[i], np.int32(4 * beta), field.rows[i + 1, :width])
-        count = _collect(field, differences[i], i + 1, count)
-    left = _decide(field, beta, count)
+    for i in range(differences.shape[0]):
+        if field.hot[i + 1]:
+            count = _collect(field, differences[i], i + 1, count)
+    left = _decide(field, count)
     field.counts[CANDIDATES] = count
     field.counts[UNDECIDED] = left
     return left

@@ -13,11 +13,16 @@ BACKGROUND, BORDER, OPEN, OBJECT = 0x00, 0x11, 0x20, 0x22
 an open cell is taken for background, the upper one the same while it is taken for object: four
 neighbours' codes added up count both ways at once, and the border weighs on neither side."""
 
+ALWAYS, NEVER, NOWHERE = 0, 9, 10
+"""Ends of the scale of needs, and that of the border. A cell joins the object when its neighbours'
+lower digits come to its need at least, and leaves it when their upper ones fall short of it: the
+digits of four neighbours come to 0 to 8."""
+
 CELLS_A_WORD = 8
 
 CANDIDATES, UNDECIDED, WAVES, VISITS, LIFTS = range(5)
-"""Counts of a solve: pixels not decided by their own difference; pixels the bounds left open; waves
-of the cut; cells that waves came by, each wave anew; single cells lifted between waves."""
+"""Counts of a solve: pixels open after all rows were asked; pixels the bounds left open; waves of the
+cut; cells that waves came by, each wave anew; single cells lifted between waves."""
 
 # Cells are unsigned throughout: an index that may be negative costs a test at every access.
 _ZERO, _ONE = np.uint64(0), np.uint64(1)
@@ -33,6 +38,9 @@ class Field(NamedTuple):
     codes: NDArray[np.uint8]  # (cells,)
     rows: NDArray[np.uint8]  # (height + 2, pitch), the same memory
     words: NDArray[np.uint64]  # (height + 2, pitch / 8), the same memory
+    hot: NDArray[np.uint8]  # (height + 2,), rows that are not background altogether
+    needs: NDArray[np.uint8]  # (height + 2, pitch), of each cell
+    asked: NDArray[np.uint8]  # (cells,), codes that every other round of questions writes to
     differences: NDArray[np.int32]  # (cells,), of candidates only
     candidates: NDArray[np.uint32]  # (pixels + 1,), cells
     pending: NDArray[np.uint32]  # (pixels + 1,), a stack of cells to come back to
@@ -55,6 +63,9 @@ def empty_field(height: int, width: int) -> Field:
         codes=rows.reshape(-1),
         rows=rows,
         words=rows.view(np.uint64),
+        hot=np.zeros(height + 2, dtype=np.uint8),
+        needs=np.full((height + 2, pitch), NOWHERE, dtype=np.uint8),
+        asked=np.full(cells, BORDER, dtype=np.uint8),
         differences=np.zeros(cells, dtype=np.int32),
         candidates=np.zeros(room, dtype=np.uint32),
         pending=np.zeros(room, dtype=np.uint32),
@@ -75,6 +86,19 @@ def sides(field: Field) -> tuple[np.uint64, np.uint64, np.uint64, np.uint64]:
     """
     pitch = np.uint64(field.rows.shape[1])
     return _ZERO - _ONE, _ONE, _ZERO - pitch, pitch
+
+
+@njit(cache=True, nogil=True)
+def needs_of(differences: NDArray[np.int32], beta: np.int32, needs: NDArray[np.uint8]) -> None:
+    """What neighbours' lower digits must come to; 4 + k of them are worth k times beta."""
+    twice, thrice, four = np.int32(2 * beta), np.int32(3 * beta), np.int32(4 * beta)
+    for j in range(differences.size):
+        x = differences[j]
+        near = np.uint8(x >= 0) + np.uint8(x >= beta) + np.uint8(x >= -beta)
+        far = np.uint8(x >= twice) + np.uint8(x >= -twice)
+        farther = np.uint8(x >= thrice) + np.uint8(x >= -thrice)
+        farthest = np.uint8(x >= four) + np.uint8(x >= -four)
+        needs[j] = np.uint8(near + far + farther + farthest)
 
 
 @njit(cache=True, nogil=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,19 @@ from naod.config import SegmentationConfig
 from naod.perception.colour_model import ColourModel
 from naod.perception.energy import STEPS, Singletons
 from naod.perception.icm import descend, label_by_singletons
-from naod.perception.optimum import Optimum
+from naod.perception.lookup import Lookup
+from naod.perception.optimum_field import WAVES, empty_field
+from naod.perception.quantising import ANY_BLOCK, Picture, kind_of
 from naod.perception.reduction import Reduction
+from naod.perception.runs import empty_runs
+from naod.perception.sight import (
+    Layout,
+    Sight,
+    Sights,
+    choose_in_mask,
+    measure_pixels,
+    see,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +35,8 @@ class Segmentation:
     `iterations`: sweeps of ICM, or waves of the exact cut, 0 where nothing was left to cut.
     `settled`: the energy came to rest within the sweeps allowed; the exact minimum always is.
     `differences`: (h, w) object's singleton energy less the background's, in steps.
+    `sight`: the memory that a segmenter lent for this, which is used again once nobody holds this,
+    its mask, its differences, or anything of its blob.
     """
 
     mask: NDArray[np.uint8]
@@ -33,10 +46,15 @@ class Segmentation:
     size: tuple[int, int]
     settled: bool
     differences: NDArray[np.int32] | None = None
+    sight: Sight | None = field(default=None, repr=False, compare=False)
 
 
 class Segmenter:
-    """Segments pictures of one size with one colour model; keeps its buffers between pictures."""
+    """Segments pictures of one size with one colour model, in memory taken at the start.
+
+    `reduction` and `singletons` are what its lookup stands for: the mean of each block, and what
+    that colour costs.
+    """
 
     def __init__(
         self, model: ColourModel, settings: SegmentationConfig, size: tuple[int, int]
@@ -44,11 +62,17 @@ class Segmenter:
         self.settings = settings
         self.reduction = Reduction(size, settings.width)
         self.singletons = Singletons(model, settings.background_energy, settings.light_std)
-        shape = (self.reduction.height, self.reduction.width)
-        self._differences = np.zeros(shape, dtype=np.int32)
-        self._labels = np.zeros(shape, dtype=np.uint8)
+        self._lookup = Lookup(self.singletons, self.beta_steps)
+        height, width = self.reduction.height, self.reduction.width
         self._energies = np.zeros(settings.sweeps_max + 1, dtype=np.int64)
-        self._optimum = Optimum(*shape)
+        self._layout = Layout(kind_of(size, self.reduction.block), self.reduction.block)
+        self._sums = np.zeros((2, 2 * size[0]), dtype=np.uint64)
+        self._no_words = np.zeros((0, 0), dtype=np.uint64)
+        self._no_words.flags.writeable = False
+        self._cells = np.zeros(width, dtype=np.uint32)
+        self._field = empty_field(height, width)
+        self._runs = empty_runs(height, width)
+        self._sights = Sights(height, width, settings.pixels_min)
 
     @property
     def beta_steps(self) -> int:
@@ -60,30 +84,80 @@ class Segmenter:
         """Change of energy below which it has settled; one step is the least there is."""
         return max(1, round(self.settings.settled * STEPS))
 
+    def take(self, model: ColourModel) -> None:
+        """Go on with another colour model; about a millisecond, and no memory."""
+        settings = self.settings
+        self.singletons = Singletons(model, settings.background_energy, settings.light_std)
+        self._lookup.rebuild(self.singletons, self.beta_steps)
+
     def segment(self, yuyv: NDArray[np.uint8]) -> Segmentation:
-        """Label a picture (H, W, 2) uint8 of the size given at the start; ValueError otherwise."""
-        picture = self.reduction(yuyv)
-        self.singletons.differences(picture, self._differences)
+        """Label a picture (H, W, 2) uint8 of the size given at the start; ValueError otherwise.
+
+        No array is made as long as what came of earlier pictures has been dropped, all but the
+        last; see `Sights`.
+        """
+        picture = self._picture(yuyv)
+        sight = self._sights.take()
         exact = self.settings.optimiser == "exact"
-        energy, iterations, settled = self._minimise() if exact else self._descend()
+        energy, iterations, settled = (self._minimise if exact else self._descend)(picture, sight)
         return Segmentation(
-            mask=self._labels.copy(),
-            energy=self._labels.size * self.settings.background_energy + energy / STEPS,
+            mask=sight.mask,
+            energy=sight.mask.size * self.settings.background_energy + energy / STEPS,
             iterations=iterations,
             scale=float(self.reduction.block),
             size=self.reduction.size,
             settled=settled,
-            differences=self._differences.copy(),
+            differences=sight.differences,
+            sight=sight,
         )
 
-    def _minimise(self) -> tuple[int, int, bool]:
-        energy = self._optimum.minimise(self._differences, self.beta_steps, self._labels)
-        return energy, self._optimum.waves, True
+    def _picture(self, yuyv: NDArray[np.uint8]) -> Picture:
+        width, height = self.reduction.size
+        if yuyv.shape != (height, width, 2) or yuyv.dtype != np.uint8:
+            raise ValueError(f"expected a uint8 YUYV picture {width}x{height}, got {yuyv.shape}")
+        raw: NDArray[np.uint8] = np.ascontiguousarray(yuyv).reshape(height, 2 * width)
+        if self._layout.kind == ANY_BLOCK:
+            words: NDArray[np.uint64] = self._no_words
+        else:
+            words = raw.view(np.uint64)
+            if not words.flags.aligned:
+                raw = raw.copy()
+                words = raw.view(np.uint64)
+            words.flags.writeable = False
+        # whether a picture may be written to is part of its type: one type, one compilation
+        raw.flags.writeable = False
+        return Picture(raw, words, self._sums)
 
-    def _descend(self) -> tuple[int, int, bool]:
-        label_by_singletons(self._differences, self._labels)
-        sweeps = descend(
-            self._differences, self._labels, self.beta_steps, self.settled_steps, self._energies
+    def _minimise(self, picture: Picture, sight: Sight) -> tuple[int, int, bool]:
+        energy, (sight.pixels, sight.points, sight.cut) = see(
+            picture,
+            self._layout,
+            self._lookup.entries,
+            self._cells,
+            self._field,
+            self.beta_steps,
+            sight.differences,
+            sight.mask,
+            self._runs,
+            sight.box,
+            sight.pixels_min,
+        )
+        return energy, int(self._field.counts[WAVES]), True
+
+    def _descend(self, picture: Picture, sight: Sight) -> tuple[int, int, bool]:
+        differences, mask, field_ = sight.differences, sight.mask, self._field
+        entries = self._lookup.entries
+        measure_pixels(picture, self._layout, entries, self._cells, field_, differences)
+        label_by_singletons(differences, mask)
+        sweeps = descend(differences, mask, self.beta_steps, self.settled_steps, self._energies)
+        sight.pixels, sight.points, sight.cut = choose_in_mask(
+            mask,
+            field_,
+            differences,
+            self._runs,
+            sight.box,
+            sight.pixels_min,
+            float(self.reduction.block),
         )
         last = int(self._energies[sweeps] - self._energies[sweeps - 1])
         return int(self._energies[sweeps]), sweeps, -last < self.settled_steps

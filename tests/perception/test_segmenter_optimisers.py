@@ -10,6 +10,7 @@ from naod.config import SegmentationConfig
 from naod.perception.blob import find_blob
 from naod.perception.colour_model import Region, learn
 from naod.perception.optimum import BETA_MAX
+from naod.perception.quantising import C_BITS, Y_BITS
 from naod.perception.segmenter import Segmentation, Segmenter
 
 SIZE = (320, 240)
@@ -30,11 +31,16 @@ def segmented(noise: float, **settings: object) -> Segmentation:
 
 
 def energy_of(segmentation: Segmentation, **settings: object) -> float:
-    """Equation 3 of a mask, every singleton and every pair written out in doubles."""
+    """Equation 3 of a mask, every singleton and every pair written out in doubles.
+
+    Colours are those in the middle of what the lookup does not tell apart.
+    """
     model = learn([noisy_picture(12.0)], Region(110, 70, 80, 100))
     config = SegmentationConfig(**settings)  # type: ignore[arg-type]
     segmenter = Segmenter(model, config, SIZE)
     picture = segmenter.reduction(noisy_picture(40.0)).astype(np.float64)
+    alike = np.array([256 >> Y_BITS, 256 >> C_BITS, 256 >> C_BITS])
+    picture = (np.floor(picture / alike) + 0.5) * alike
     mean = np.array(model.mean)
     shades = config.light_std * (mean - (0.0, 128.0, 128.0))
     covariance = np.array(model.covariance) + np.outer(shades, shades)

@@ -1,0 +1,152 @@
+"""Connected regions of a mask from its runs: stretches of touching pixels within a row.
+
+Only rows with something in them are looked at, eight pixels at a time.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from naod.perception.optimum_field import OBJECT
+
+AREA, LEFT, RIGHT, TOP, BOTTOM, SUM_X, SUM_Y, EVIDENCE = range(8)
+"""Columns of the table of regions; EVIDENCE: steps by which its pixels are likelier object."""
+
+_OBJECT_BITS = np.uint64(0x0202020202020202)
+_NONE = np.uint64(0)
+_CELLS_A_WORD = 8
+
+
+class Runs(NamedTuple):
+    """Runs in the order of rows, and the regions that they make up.
+
+    Run k is row `rows[k]`, columns `starts[k]` to `ends[k]`, in region `names[k]`, which is a line
+    of the table; 0 is nobody. Regions count from 1 in the order of their first pixels.
+    """
+
+    rows: NDArray[np.int32]  # (runs at most,)
+    starts: NDArray[np.int32]
+    ends: NDArray[np.int32]
+    names: NDArray[np.int32]  # while they are joined, each run's parent among the runs
+    table: NDArray[np.int64]  # (regions at most + 1, 8)
+
+
+def empty_runs(height: int, width: int) -> Runs:
+    """All the memory that masks of this size ever need."""
+    runs = height * ((width + 1) // 2) + 1
+    regions = ((height + 1) // 2) * ((width + 1) // 2) + 1
+    ints = np.zeros((4, runs), dtype=np.int32)
+    return Runs(ints[0], ints[1], ints[2], ints[3], np.zeros((regions, 8), dtype=np.int64))
+
+
+@njit(cache=True, nogil=True)
+def _runs_of_row(
+    codes: NDArray[np.uint8], words: NDArray[np.uint64], row: int, runs: Runs, count: int
+) -> int:
+    """Append the runs of one padded row, whose last cell is never object."""
+    inside = False
+    for k in range(words.size):
+        bits = words[k] & _OBJECT_BITS
+        if bits == (_OBJECT_BITS if inside else _NONE):
+            continue
+        for j in range(k * _CELLS_A_WORD, (k + 1) * _CELLS_A_WORD):
+            here = codes[j] == OBJECT
+            if here == inside:
+                continue
+            inside = here
+            if here:
+                runs.rows[count], runs.starts[count] = row, j
+            else:
+                runs.ends[count] = j - 1
+                count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _root(parents: NDArray[np.int32], run: int) -> int:
+    while parents[run] != run:
+        parents[run] = parents[parents[run]]
+        run = parents[run]
+    return run
+
+
+@njit(cache=True, nogil=True)
+def _join_above(runs: Runs, above: int, first: int, count: int) -> None:
+    """Join the runs of a row, `first` to `count`, with those of the row above that they touch."""
+    parents, starts, ends = runs.names, runs.starts, runs.ends
+    for run in range(first, count):
+        parents[run] = run
+        while above < first and ends[above] + 1 < starts[run]:
+            above += 1
+        other = above
+        while other < first and starts[other] <= ends[run] + 1:
+            a, b = _root(parents, run), _root(parents, other)
+            parents[max(a, b)] = min(a, b)
+            other += 1
+
+
+@njit(cache=True, nogil=True)
+def _measure(runs: Runs, differences: NDArray[np.int32], count: int) -> int:
+    """Name the regions and fill their table; how many there are."""
+    regions = 0
+    table = runs.table
+    for run in range(count):
+        parent = runs.names[run]
+        row, start, end = runs.rows[run], runs.starts[run], runs.ends[run]
+        if parent == run:
+            regions += 1
+            runs.names[run] = regions
+            line = table[regions]
+            line[:] = 0
+            line[LEFT], line[TOP] = start, row
+        else:
+            # a parent comes before, so it has its name already
+            runs.names[run] = runs.names[parent]
+        line = table[runs.names[run]]
+        pixels = end - start + 1
+        line[AREA] += pixels
+        line[LEFT] = min(line[LEFT], start)
+        line[RIGHT] = max(line[RIGHT], end)
+        line[BOTTOM] = row
+        line[SUM_X] += (start + end) * pixels // 2
+        line[SUM_Y] += row * pixels
+        if differences.size:
+            line[EVIDENCE] += _evidence(differences[row, start : end + 1])
+    return regions
+
+
+@njit(cache=True, nogil=True)
+def _evidence(differences: NDArray[np.int32]) -> int:
+    # a pixel that is likelier background counts nothing: the field closed a hole there
+    steps = 0
+    for j in range(differences.size):
+        steps -= min(differences[j], np.int32(0))
+    return steps
+
+
+@njit(cache=True, nogil=True)
+def find_runs(
+    rows: NDArray[np.uint8],
+    words: NDArray[np.uint64],
+    hot: NDArray[np.uint8],
+    differences: NDArray[np.int32],
+    runs: Runs,
+) -> tuple[int, int]:
+    """Runs and regions (eight neighbours) of OBJECT in a padded field; how many of each.
+
+    `rows`, `words`, `hot` as in `Field`. `differences` is (h, w), or (0, 0) where there are none.
+    """
+    above = count = 0
+    last = -2
+    for i in range(rows.shape[0] - 2):
+        if hot[i + 1] == 0:
+            continue
+        first = count
+        count = _runs_of_row(rows[i + 1], words[i + 1], i, runs, count)
+        _join_above(runs, above if last == i - 1 else first, first, count)
+        above, last = first, i
+    return count, _measure(runs, differences, count)
