@@ -14,8 +14,11 @@ from naod.files import read_toml
 from naod.pose.objects import Cylinder, ObjectShape, shape_of
 
 
-def open_configured(config: DaemonConfig, beside: Path) -> Robot:
-    """Open it; paths in the configuration are `beside` the file. Raises InputError, HalError."""
+def open_configured(config: DaemonConfig, beside: Path, real_time: bool = True) -> Robot:
+    """Open it; paths in the configuration are `beside` the file. Raises InputError, HalError.
+
+    `real_time`: a simulated robot otherwise goes by a clock that moves when somebody waits.
+    """
     if config.camera.device and config.robot.backend != "lola":
         raise InputError(
             f"camera.device: backend {config.robot.backend!r} has a camera of its own; "
@@ -23,7 +26,7 @@ def open_configured(config: DaemonConfig, beside: Path) -> Robot:
         )
     section: dict[str, object] = {}
     if config.robot.backend == "sim":
-        section = _simulation(config, beside)
+        section = _simulation(config, beside, real_time)
     elif config.robot.backend == "naoqi":
         section = {
             "url": config.naoqi.url,
@@ -71,11 +74,11 @@ def _device(device: str, beside: Path) -> str:
     return str(beside / device) if is_path else device
 
 
-def _simulation(config: DaemonConfig, beside: Path) -> dict[str, object]:
+def _simulation(config: DaemonConfig, beside: Path, real_time: bool) -> dict[str, object]:
     path = beside / config.sim.scenario if config.sim.scenario else None
     return {
         "scenario": read_toml(path, Scenario) if path is not None else None,
         "scenario_folder": path.parent if path is not None else beside,
         "seed": config.sim.seed,
-        "real_time": True,
+        "real_time": real_time,
     }
