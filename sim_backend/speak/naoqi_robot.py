@@ -56,6 +56,7 @@ class PeerRobot:
         self.stiffness: NDArray[np.float64] = np.full(len(JOINT_NAMES), float(self.awake))
         self.life = told.life
         self.lifted = False
+        self.picture_ns = 0
         self.refusals: dict[str, str] = {}
         self.calls: dict[str, int] = {}
 

@@ -104,6 +104,7 @@ class Video:
             frame = subscription.camera.latest(1.0)
         if frame is None:
             return ()
+        self._robot.picture_ns = frame.stamp_ns
         after_s = _DELAY_S[frame.camera] - READOUT_S[frame.camera] / 2.0
         told = self._robot.told
         offset_s = told.clock_offset_s + told.picture_offset_s + after_s

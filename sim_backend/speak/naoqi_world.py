@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+from dataclasses import replace
 
 import qi
 
@@ -45,6 +46,16 @@ class SimWorld:
         """Carry the robot somewhere."""
         self._robot.sim.place(PlanarMotion(float(x), float(y), float(yaw)))
 
+    def reset(self) -> None:
+        """Put up where it started, awake, refusing nothing."""
+        self._robot.lifted = False
+        with self._robot.lock:
+            self._robot.refusals.clear()
+        self._robot.sim.walk.stop()
+        x, y, yaw_deg = self._robot.sim.scenario.robot.start
+        self.place(x, y, math.radians(yaw_deg))
+        self._robot.set_motors(True)
+
     def knockOver(self) -> None:
         """Let it fall."""
         self._robot.sim.knock_over()
@@ -63,6 +74,20 @@ class SimWorld:
     def calls(self, method: str) -> int:
         """How often "Service.method" was called."""
         return self._robot.calls.get(method, 0)
+
+    def pictureTaken(self) -> int:
+        """When the picture handed out last was taken, the middle of its exposure.
+
+        In ns of the machine's monotonic clock, which all its processes share.
+        """
+        return self._robot.picture_ns
+
+    def become(self, changes: dict[str, object]) -> None:
+        """Change the peer's own options, by name, and restart."""
+        missing = changes.get("missing", self._robot.told.missing)
+        told = {**changes, "missing": tuple(missing)}  # type: ignore[arg-type]
+        self._robot.told = replace(self._robot.told, **told)  # type: ignore[arg-type]
+        self._restart.set()
 
     def restart(self) -> None:
         """As NAOqi does: every connection is cut, what was written is forgotten, the walk ends."""

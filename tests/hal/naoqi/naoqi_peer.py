@@ -17,6 +17,7 @@ from typing import Any
 import msgspec
 
 from hal.backends import OpenOptions
+from hal.errors import HalError
 from hal.naoqi.robot import NaoqiRobot, open_robot
 from hal.naoqi.session import Session
 from hal.scenario import Scenario
@@ -65,6 +66,28 @@ class Peer:
     def world(self, method: str, *args: object) -> Any:
         """Ask SimWorld."""
         return self.ask.call("SimWorld", method, *args, timeout_s=5.0)
+
+    def reset(self) -> None:
+        """Awake, standing at its start, refusing nothing, as it was told at first."""
+        self.world("reset")
+
+    def again(self, method: str = "restart", *args: object) -> None:
+        """Restart NAOqi, and wait until it is back."""
+        self.world(method, *args)
+        until(lambda: not self.ask_connected())
+        until(self.is_back)
+
+    def ask_connected(self) -> bool:
+        """Whether the test's own connection stands."""
+        return self._ask is not None and self._ask.connected
+
+    def is_back(self) -> bool:
+        """Whether it answers."""
+        try:
+            self.world("truth")
+        except HalError:
+            return False
+        return True
 
     def motion(self, method: str, *args: object) -> Any:
         """Ask ALMotion."""

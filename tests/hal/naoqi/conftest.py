@@ -1,0 +1,36 @@
+"""One peer for all tests that leave it as it was, and what they need of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("qi", reason="the package qi is not installed")
+
+from naoqi_peer import Peer
+
+from hal.naoqi.robot import NaoqiRobot
+
+
+@pytest.fixture(scope="session")
+def _shared() -> Iterator[Peer]:
+    peer = Peer()
+    yield peer
+    peer.close()
+
+
+@pytest.fixture
+def peer(_shared: Peer) -> Peer:
+    """The simulated robot, awake and at its start."""
+    _shared.reset()
+    return _shared
+
+
+@pytest.fixture
+def robot(peer: Peer) -> Iterator[NaoqiRobot]:
+    """The backend on it, the camera settled."""
+    found = peer.robot()
+    found.camera.unseen(20.0)
+    yield found
+    found.close()
