@@ -7,7 +7,7 @@ from collections.abc import Callable
 import cv2
 import msgspec
 
-from naod.bench import growth, optima, poses, ratios
+from naod.bench import growth, optima, photographs, poses, ratios
 from naod.bench.contest import MEMCPY, Contest
 from naod.bench.frames import Sequence, Walk, WalkSettings
 from naod.bench.peers.peer import CONTESTANTS
@@ -43,6 +43,7 @@ def run(progress: Progress, settings: WalkSettings | None = None, walks: int = W
             optima.run([*rendered, *real], progress),
             poses.run(settings, progress),
             growth.run(settings, progress),
+            photographs.run(real, progress),
         )
         return _report(contest, settings, walks, [one.name for one in real], further)
     finally:

@@ -11,9 +11,29 @@ from numpy.typing import NDArray
 
 from hal.yuyv import yuyv_from_rgb
 from naod.bench.frames import Frame, Sequence, marked_region
+from naod.perception.colour_model import Region
 
 FOLDER_VARIABLE = "NAOD_BENCH_DATA"
 DEFAULT_FOLDER = "../shared/data"
+
+
+WALK_REGION = Region(60, 320, 160, 360)
+"""The yellow chair's back in the first picture of the walk."""
+
+
+def photographs() -> Path:
+    """The folder they are in."""
+    return Path(os.environ.get(FOLDER_VARIABLE, DEFAULT_FOLDER))
+
+
+def robots_walk() -> Sequence | None:
+    """A NAO walks up to a yellow chair, which is in every picture; nobody made masks."""
+    files = sorted((photographs() / "nao_walk").glob("*.jpg"))
+    pictures = [cv2.imread(str(path)) for path in files]
+    frames = [Frame(yuyv_from_rgb(_rgb(np.asarray(p))), None) for p in pictures if p is not None]
+    if not frames:
+        return None
+    return Sequence("NAO's walk", frames[0].yuyv, WALK_REGION, tuple(frames))
 
 
 def real_sequences() -> list[Sequence]:
@@ -21,7 +41,7 @@ def real_sequences() -> list[Sequence]:
 
     Looked for in the folder that NAOD_BENCH_DATA names, else where the project's tests do.
     """
-    folder = Path(os.environ.get(FOLDER_VARIABLE, DEFAULT_FOLDER))
+    folder = photographs()
     lemur = _pairs([(folder / "lemur/lemur.png", folder / "lemur/lemur_alpha.png")])
     drift = folder / "davis_drift"
     pictures = sorted((drift / "JPEGImages").glob("*.jpg"))
@@ -52,8 +72,12 @@ def _pairs(paths: list[tuple[Path, Path]]) -> list[Frame]:
 
 
 def _frame(bgr: NDArray[np.generic], alpha: NDArray[np.generic]) -> Frame:
+    rgb = _rgb(bgr)
+    inside = np.asarray(alpha[:, : rgb.shape[1]], dtype=np.uint8) > 127
+    return Frame(yuyv_from_rgb(rgb), inside.astype(np.uint8))
+
+
+def _rgb(bgr: NDArray[np.generic]) -> NDArray[np.uint8]:
     """An odd last column is left out: YUYV has pairs."""
     width = bgr.shape[1] - bgr.shape[1] % 2
-    rgb = np.ascontiguousarray(bgr[:, :width, ::-1], dtype=np.uint8)
-    inside = np.asarray(alpha[:, :width], dtype=np.uint8) > 127
-    return Frame(yuyv_from_rgb(rgb), inside.astype(np.uint8))
+    return np.ascontiguousarray(bgr[:, :width, ::-1], dtype=np.uint8)
