@@ -39,6 +39,8 @@ def picture_from(result: object, width: int, height: int) -> Picture | None:
         seconds, micros = int(result[4]), int(result[5])
     except (TypeError, ValueError):
         raise PictureError(f"a picture's head is not numbers: {_shown(result[:6])}") from None
+    if had[:2] == (0, 0):
+        return None
     if had != (width, height, BYTES_PER_PIXEL, YUV422):
         raise PictureError(
             f"asked for {width}x{height} in YUV422, got {had[0]}x{had[1]}, {had[2]} layers, "

@@ -114,7 +114,8 @@ class NaoqiWalk:
         """What the walk does now; while the connection is cut, what was known last."""
         with self._lock:
             motion = self._motion
-            moving = self._active or motion is not None or self._rising is not None
+            busy = (motion, self._rising, self._stopping)
+            moving = self._active or any(one is not None for one in busy)
             return WalkStatus(
                 stamp_ns=time.monotonic_ns(),
                 moving=moving,

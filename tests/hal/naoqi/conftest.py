@@ -28,6 +28,14 @@ def peer(_shared: Peer) -> Peer:
 
 
 @pytest.fixture
+def walker(peer: Peer) -> Iterator[NaoqiRobot]:
+    """The backend on it."""
+    found = peer.robot()
+    yield found
+    found.close()
+
+
+@pytest.fixture
 def robot(peer: Peer) -> Iterator[NaoqiRobot]:
     """The backend on it, the camera settled."""
     found = peer.robot()

@@ -51,7 +51,7 @@ def test_any_bytes_come_through_as_a_text(data):
     assert bytes_from(sent, len(data)) == data
 
 
-@pytest.mark.parametrize("nothing", [None, [], ()])
+@pytest.mark.parametrize("nothing", [None, [], (), answer(b"", tuple, width=0, height=0)])
 def test_no_picture_yet(nothing):
     assert picture_from(nothing, 4, 2) is None
 
