@@ -1,0 +1,68 @@
+"""An object that was lost and comes into view again is found at once."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hal.types import HeadAngles
+from naod.config import DaemonConfig
+from naod.experiment.approach_run import Experiment
+from naod.experiment.opening import open_lockstep
+from naod.experiment.person import face_corners
+from naod.experiment.scenarios import demo_scenario
+from naod.geometry.transforms import inverse, planar
+
+FRAMES_MAX = 2
+AWAY = (HeadAngles(1.9, 0.0), HeadAngles(-1.7, 0.3))
+
+
+@pytest.fixture(scope="module", params=["can", "board"])
+def run(request):
+    lockstep = open_lockstep(DaemonConfig(), demo_scenario(request.param, 1), Path(), 1, False)
+    Experiment(lockstep, 1).demonstrate()
+    yield lockstep
+    lockstep.robot.close()
+
+
+def in_view(run, tick):
+    """Whether the whole object is inside the picture, by the truth and the body's angles then."""
+    base = tick.truth.base
+    T_base_camera = run.equipment.T_base_camera(tick.seen.body)
+    T_camera_world = inverse(planar(base.x, base.y, base.yaw) @ T_base_camera)
+    T = T_camera_world @ tick.truth.T_world_object
+    points = (T[:3, :3] @ face_corners(run.equipment.shape).T).T + T[:3, 3]
+    if points[:, 2].min() < 0.05:
+        return False
+    pixels = run.equipment.camera.project(points)
+    size = (run.equipment.camera.width, run.equipment.camera.height)
+    return bool((pixels > 0.0).all() and (pixels < np.array(size) - 1.0).all())
+
+
+def lose(run, away):
+    """Somebody turns the head away until the object counts as lost."""
+    lost = run.state.lost_count
+    for _ in range(60):
+        run.tick()
+        run.robot.head.look(away, 2.0)
+        if run.state.lost_count > lost:
+            return
+    raise AssertionError("the object was not lost")
+
+
+@pytest.mark.parametrize("away", AWAY)
+def test_found_within_two_frames_of_coming_into_view(run, away):
+    lose(run, away)
+    assert run.state.search_from_ns is not None
+    seen = 0
+    for _ in range(90):
+        tick = run.tick()
+        if tick.seen.frame is None or not in_view(run, tick):
+            assert seen == 0, "it went out of view before it was found"
+            continue
+        seen += 1
+        if run.state.target.seen_ns == tick.seen.frame.stamp_ns:
+            break
+    assert 1 <= seen <= FRAMES_MAX
+    assert run.state.search_from_ns is None
+    assert [event.kind for event in run.events][-1] == "found"
