@@ -182,7 +182,7 @@ def _unconnected(error: HalError, url: str, login: Login | None) -> HalError:
     # a login that fails shows as nothing but a connection that was closed
     if text == "disconnected" and _listens(url):
         who = "without a password" if login is None else f"as {login.user!r} with this password"
-        return LoginError(f"NAOqi at {url} does not let us in {who}")
+        return LoginError(f"NAOqi at {url} closes the connection: it does not let us in {who}")
     return NotConnectedError(f"NAOqi at {url} is not reachable: {text}")
 
 

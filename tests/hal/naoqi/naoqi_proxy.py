@@ -14,19 +14,15 @@ class Network:
     def __init__(self, url: str) -> None:
         parts = urlsplit(url)
         self._to = (parts.hostname, parts.port)
-        self._socket = socket.create_server(("127.0.0.1", 0))
-        self.url = f"tcp://127.0.0.1:{self._socket.getsockname()[1]}"
+        self._port = 0
         self._ends: list[socket.socket] = []
-        self.whole = True
-        threading.Thread(target=self._accept, daemon=True).start()
+        self.mend()
+        self.url = f"tcp://127.0.0.1:{self._port}"
 
-    def _accept(self) -> None:
+    def _accept(self, listening: socket.socket) -> None:
         with suppress(OSError):
             while True:
-                client, _ = self._socket.accept()
-                if not self.whole:
-                    client.close()
-                    continue
+                client, _ = listening.accept()
                 server = socket.create_connection(self._to)
                 self._ends += [client, server]
                 for ends in ((client, server), (server, client)):
@@ -43,19 +39,16 @@ class Network:
 
     def cut(self) -> None:
         """Every connection ends, and none is made, until `mend`."""
-        self.whole = False
-        for end in self._ends:
+        for end in (self._socket, *self._ends):
             with suppress(OSError):
                 end.shutdown(socket.SHUT_RDWR)
+        self._socket.close()
         self._ends.clear()
 
     def mend(self) -> None:
-        """Connections are made again."""
-        self.whole = True
+        """Connections are made, under the same address as before."""
+        self._socket = socket.create_server(("127.0.0.1", self._port))
+        self._port = self._socket.getsockname()[1]
+        threading.Thread(target=self._accept, args=(self._socket,), daemon=True).start()
 
-    def close(self) -> None:
-        """End it."""
-        self.cut()
-        with suppress(OSError):
-            self._socket.shutdown(socket.SHUT_RDWR)
-        self._socket.close()
+    close = cut
