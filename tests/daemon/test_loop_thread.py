@@ -37,6 +37,8 @@ from naod.walk_server.rules import Rules
 from naod.walk_server.server import WalkServer
 
 PATIENCE_S = 10.0
+WATCHDOG_S = 2.0
+"""As in deploy/naod.service."""
 M = TypeVar("M", bound=Message)
 
 
@@ -46,6 +48,9 @@ class Heard:
     def __init__(self, bus: Bus, name: str, kind: type[M]) -> None:
         self._queue: queue.SimpleQueue = queue.SimpleQueue()
         bus.subscribe(name, kind, self._queue.put, pytest.fail)
+
+    def empty(self) -> bool:
+        return self._queue.empty()
 
     def until(self, what: Callable[[Message], bool]) -> Message:
         while not what(message := self._queue.get(timeout=PATIENCE_S)):
@@ -200,6 +205,42 @@ def test_robot_stops_by_itself_when_the_walk_server_hangs(
         now_ns = clock.now_ns()
     assert now_ns - begin_ns < 0.6e9
     hung.set()
+
+
+def test_tick_that_takes_long_is_counted_and_stops_nobody(
+    parts: Parts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Learning a colour takes a part of a second, more on a robot: several deadlines.
+
+    The walk is not the loop's to stop meanwhile, and the watchdog has the time for it.
+    """
+    long_s, fed, slow = 0.6, threading.Event(), threading.Event()
+    velocities: list[float] = []
+
+    def learning(equipment, state, seen, now_ns):
+        if slow.is_set():
+            slow.clear()
+            threading.Event().wait(long_s)
+            velocities.append(parts.robot.walk.status().velocity.x)
+        return step(equipment, state, seen, now_ns)
+
+    monkeypatch.setattr(loop_module, "step", learning)
+    parts.loop.after_tick = fed.set
+    parts.loop.start()
+    before = parts.states.until(lambda s: s.seq > 3)
+    drive = WalkCommand(source="op", seq=1, kind="velocity", x=0.08, ttl_ms=1000)
+    assert parts.server.command(drive) is None
+    fed.clear()
+    slow.set()
+    assert fed.wait(WATCHDOG_S)
+    after = parts.states.until(lambda s: s.stamp_ns > before.stamp_ns + long_s * 1e9)
+    assert velocities[0] > 0.0
+    assert after.faults == ()
+    assert parts.walks.empty()
+    deadline_ns = parts.loop.now_ns() + int(PATIENCE_S * 1e9)
+    while parts.loop.diagnostics is None or parts.loop.diagnostics.overruns < 5:
+        parts.states.until(lambda _s: True)
+        assert parts.loop.now_ns() < deadline_ns
 
 
 def test_what_cannot_be_kept_is_told_to_whoever_asked(parts: Parts) -> None:
