@@ -24,6 +24,9 @@ STEP_MAX_S = 3 * PERIOD_S
 """After a gap in LoLA's messages the targets go on from where they were, not from where they would
 have been."""
 
+SAFE_TICKS = 3
+"""How often the last message is said, for nobody knows what LoLA does with one it has not read."""
+
 HOT_FROM = 1.0
 SOFT_RATIO = 0.5
 
@@ -48,15 +51,14 @@ class Session:
         self._counts = counts
         self._resting = resting
         self._before_ns = 0
+        self._safe_ticks = 0
         self.state: CoreState[StandingState] | None = None
         self.sensors: Sensors | None = None
 
     @property
     def done(self) -> bool:
-        """Whether the robot can be left alone."""
-        if self.state is None or self.sensors is None:
-            return False
-        return self._core.done(self.state, self.sensors)
+        """Whether the robot can be left alone, and LoLA has been told so often enough."""
+        return self._safe_ticks >= SAFE_TICKS
 
     @property
     def resting(self) -> bool:
@@ -76,6 +78,8 @@ class Session:
         self.state, actuators = self._core.step(self.state, sensors, wanted, dt_s)
         self._link.send(encode_actuators(actuators))
         answered_ns = time.monotonic_ns()
+        safe = self._core.done(self.state, sensors)
+        self._safe_ticks = self._safe_ticks + 1 if safe else 0
         self._shared.put(now_ns, answered_ns, body_values(sensors))
         self._counts.ticks += 1
         self._counts.late += answered_ns - now_ns > LATE_NS

@@ -111,6 +111,20 @@ class JointWorld(World):
         """Whether it lies."""
         return self._model.fallen
 
+    @property
+    def angles_rad(self) -> Array:
+        """(26,), the true ones."""
+        return self._servos.angles_rad
+
+    def summary(self) -> str:
+        """How it is, in a few words."""
+        with self.lock:
+            if self._model.fallen:
+                return "has fallen"
+            posed = "stands" if self._T_base_torso[2, 3] > HIGH_M else "sits"
+            stiff = bool((self._servos.stiffness > 0.0).any())
+            return f"{posed}, its joints {'stiff' if stiff else 'free'}"
+
     def drive(self, target_rad: Array | None, stiffness: Array | None) -> None:
         """What the joints are to do from now on, (26,) each, or None for as before."""
         with self.lock:

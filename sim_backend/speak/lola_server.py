@@ -85,9 +85,9 @@ class LolaServer:
             data = client.recv(READ_BYTES)
         except BlockingIOError:
             return
-        except OSError as error:
-            self._hang_up(f"the client broke off: {error.strerror}")
-            return
+        except OSError:
+            # it went with messages of ours unread; its own have all been read by now
+            data = b""
         if not data:
             self._hang_up("the client has gone")
             return
@@ -121,8 +121,8 @@ class LolaServer:
             whole = client.send(data) == len(data)
         except BlockingIOError:
             whole = False
-        except OSError as error:
-            self._hang_up(f"the client broke off: {error.strerror}")
+        except OSError:
+            # it has gone; what it said last is read first
             return
         if not whole:
             self._ignored = True
@@ -130,6 +130,6 @@ class LolaServer:
 
     def _hang_up(self, why: str) -> None:
         if self._client is not None:
-            self._say(why)
+            self._say(f"{why}; the robot {self._world.summary()}")
             self._client.close()
             self._client = None
