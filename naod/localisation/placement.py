@@ -71,7 +71,7 @@ def placed(
     at = T[:3, 3]
     neck, feet = turned(at - T_base_camera[:3, 3]), turned(at)
     body = neck @ neck.T + feet @ feet.T
-    late = np.zeros(6) if motion is None else _lateness(at, T_base_camera, motion)
+    late = np.zeros(6) if motion is None else lateness(at, T_base_camera, motion)
     delay = np.outer(late, late)
     own = R @ scattered @ R.T + JITTER_RAD**2 * body + CLOCK_JITTER_S**2 * delay
     shared = R @ common @ R.T + LEANING_RAD**2 * body + CLOCK_OFFSET_S**2 * delay
@@ -98,7 +98,7 @@ def turned(arm: Vector) -> Matrix:
     return np.vstack([-cross, np.eye(3)])
 
 
-def _lateness(at: Vector, T_base_camera: Matrix, motion: CameraMotion) -> Vector:
+def lateness(at: Vector, T_base_camera: Matrix, motion: CameraMotion) -> Vector:
     """(6,): what a second between picture and angles would do to the object in the base frame."""
     R = T_base_camera[:3, :3]
     turn = R @ motion.turn_rad_s

@@ -9,6 +9,7 @@ import math
 from dataclasses import replace
 
 from naod.approach.displacement import shape_kind
+from naod.localisation.camera_motion import CameraMotion
 from naod.loop.approach import approach
 from naod.loop.equipment import Equipment, Sighting
 from naod.loop.expectation import expected
@@ -34,20 +35,24 @@ def look_at(equipment: Equipment, state: LoopState, seen: Observation) -> Sighti
     """The object in the picture of this tick, if there is a picture and a model to look with."""
     if seen.frame is None or state.model is None or state.mode == "idle":
         return None
-    prior = _expectation(equipment, state, seen, seen.frame.stamp_ns)
     motion = equipment.motion(seen.around, seen.walk)
+    prior = _expectation(equipment, state, seen, seen.frame.stamp_ns, motion)
     return equipment.sight(state.model, seen.frame, seen.body, prior, motion)
 
 
 def _expectation(
-    equipment: Equipment, state: LoopState, seen: Observation, stamp_ns: int
+    equipment: Equipment,
+    state: LoopState,
+    seen: Observation,
+    stamp_ns: int,
+    motion: CameraMotion | None,
 ) -> Prior | None:
     anchor = state.target.anchor if state.target else None
     T_base_camera = equipment.T_base_camera(seen.body)
     if anchor is None or T_base_camera is None:
         return None
     turns_to_us = shape_kind(equipment.shape) == "cylinder"
-    return expected(anchor, seen.walk, T_base_camera, stamp_ns, turns_to_us)
+    return expected(anchor, seen.walk, T_base_camera, stamp_ns, turns_to_us, motion)
 
 
 def decide(

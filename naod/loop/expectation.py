@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from hal.types import PlanarMotion
 from naod.geometry.transforms import Matrix, inverse, planar, yaw_of
-from naod.localisation.placement import Placement, both, turned
+from naod.localisation.camera_motion import CameraMotion
+from naod.localisation.placement import Placement, both, lateness, turned
 from naod.messages import WalkState
 from naod.pose.frames import facing
 from naod.pose.prior import Prior
@@ -25,6 +26,9 @@ SWAY_M, SWAY_RAD = 0.02, 0.03
 
 CARRIED_M_SQRT_S, TURNED_RAD_SQRT_S = 0.01, 0.02
 """Somebody may move the object; per square root of a second."""
+
+CLOCK_S = 0.01
+"""Between the time of a picture and that of the angles."""
 
 LATE_S = 0.1
 """Odometry is from another moment than the picture by up to so much."""
@@ -50,11 +54,17 @@ def anchored(placement: Placement, walk: WalkState) -> Anchor:
 
 
 def expected(
-    anchor: Anchor, walk: WalkState, T_base_camera: Matrix, stamp_ns: int, turns_to_us: bool
+    anchor: Anchor,
+    walk: WalkState,
+    T_base_camera: Matrix,
+    stamp_ns: int,
+    turns_to_us: bool,
+    motion: CameraMotion | None = None,
 ) -> Prior | None:
     """The object in the camera at a time, None when that is no longer known to half a metre.
 
     `turns_to_us`: its z axis looks towards the camera from wherever it is seen, as a can's does.
+    `motion`: of the camera at that time, by which the clocks' error counts.
     """
     age_s = max(stamp_ns - anchor.stamp_ns, 0) / 1e9
     T_then_now = inverse(planar(*anchor.odometry)) @ planar(*walk.odometry)
@@ -64,6 +74,9 @@ def expected(
     gone = PlanarMotion(float(T_then_now[0, 3]), float(T_then_now[1, 3]), yaw_of(T_then_now))
     covariance = R @ anchor.covariance @ R.T
     covariance = covariance + _growth(T_base_object[:3, 3], gone, walk, age_s)
+    if motion is not None:
+        late = lateness(T_base_object[:3, 3], T_base_camera, motion)
+        covariance = covariance + CLOCK_S**2 * np.outer(late, late)
     if not np.isfinite(covariance).all() or np.trace(covariance[:3, :3]) > UNSURE_M**2:
         return None
     T = inverse(T_base_camera) @ T_base_object

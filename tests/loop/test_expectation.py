@@ -12,7 +12,7 @@ from hal.nao.postures import posture
 from naod.geometry.transforms import inverse, planar, rot_z, transform
 from naod.localisation.base_frame import T_base_camera
 from naod.localisation.body_model import BodyModel
-from naod.localisation.camera_motion import rotation_vector
+from naod.localisation.camera_motion import CameraMotion, rotation_vector
 from naod.localisation.placement import Placement
 from naod.loop.expectation import anchored, expected
 
@@ -96,6 +96,17 @@ def test_time_ways_turns_and_steps_each_make_it_less_sure():
     assert sigma() < sigma((0.1, 0.0, 0.0)) < sigma((0.2, 0.0, 0.0))
     assert sigma() < sigma((0.0, 0.0, 0.2)) < sigma((0.0, 0.0, 0.4))
     assert sigma() < sigma(moving=True) < sigma(moving=True, velocity=(0.1, 0.0, 0.0))
+
+
+def test_a_head_that_turns_makes_it_less_sure_aside():
+    anchor, T = seen_from(FIRST, FIRST), camera_in_base()
+    turning = CameraMotion(np.zeros(3), np.array([0.0, 2.0, 0.0]))
+    still, swung = (
+        expected(anchor, replaced(walk(), FIRST), T, 0, False, motion) for motion in (None, turning)
+    )
+    x, _, z = still.T_camera_object[:3, 3]
+    grown = np.diag(swung.covariance - still.covariance)[:3]
+    assert grown == pytest.approx(np.square((0.01 * 2.0 * z, 0.0, 0.01 * 2.0 * x)), abs=1e-12)
 
 
 def test_wrong_odometry_stays_within_what_is_stated():
