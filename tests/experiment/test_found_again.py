@@ -1,17 +1,18 @@
-"""An object that was lost and comes into view again is found at once."""
+"""An object that was lost is found at once when it comes into view, and expected where it is."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hal.types import HeadAngles
+from hal.types import HeadAngles, PlanarMotion
 from naod.config import DaemonConfig
 from naod.experiment.approach_run import Experiment
 from naod.experiment.opening import open_lockstep
 from naod.experiment.person import face_corners
 from naod.experiment.scenarios import demo_scenario
 from naod.geometry.transforms import inverse, planar
+from naod.loop.types import Stop
 
 FRAMES_MAX = 2
 AWAY = (HeadAngles(1.9, 0.0), HeadAngles(-1.7, 0.3))
@@ -66,3 +67,39 @@ def test_found_within_two_frames_of_coming_into_view(run, away):
     assert 1 <= seen <= FRAMES_MAX
     assert run.state.search_from_ns is None
     assert [event.kind for event in run.events][-1] == "found"
+
+
+def object_in_camera(run, tick):
+    base = tick.truth.base
+    T_world_camera = planar(base.x, base.y, base.yaw) @ run.equipment.T_base_camera(tick.seen.body)
+    return (inverse(T_world_camera) @ tick.truth.T_world_object)[:3, 3]
+
+
+def test_it_is_expected_where_it_is_while_the_robot_walks_and_turns_its_head(run, monkeypatch):
+    """Odometry, kinematics and their stated uncertainty, picture by picture."""
+    priors = []
+    sight = run.equipment.sight
+
+    def noting(model, frame, body, prior=None, motion=None):
+        priors.append(prior)
+        return sight(model, frame, body, prior, motion)
+
+    run.ask(Stop())
+    monkeypatch.setattr(run.equipment, "sight", noting)
+    squares, sigmas = [], []
+    for n in range(60):
+        velocity = PlanarMotion(-0.04, 0.06, 0.1) if n < 40 else PlanarMotion(0.0, 0.0, 0.0)
+        run.robot.walk.set_velocity(velocity, 1.0)
+        if n in (10, 30):
+            run.robot.head.look(HeadAngles(0.3, 0.0), 2.0)
+        before = len(priors)
+        tick = run.tick()
+        if len(priors) == before or priors[-1] is None:
+            continue
+        gap = priors[-1].T_camera_object[:3, 3] - object_in_camera(run, tick)
+        covariance = priors[-1].covariance[:3, :3]
+        squares.append(gap @ np.linalg.solve(covariance, gap) / 3.0)
+        sigmas.append(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
+    assert len(squares) > 40
+    assert np.mean(squares) < 2.0
+    assert np.median(sigmas) < 0.05
