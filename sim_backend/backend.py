@@ -67,7 +67,7 @@ class SimRobot:
         self._info = RobotInfo(options.name, told.version, "sim", True)
         self._simulated = Body(told.version)
         if told.real_time:
-            _warm_up(self._scene)
+            warm_up(self._scene)
         real_ns = time.monotonic_ns if told.real_time else None
         self._world = World(told.scenario, told.version, told.seed, real_ns)
         self._version, self._seed = told.version, told.seed
@@ -188,7 +188,7 @@ class SimRobot:
         self._simulated.close()
 
 
-def _warm_up(scene: Scene) -> None:
+def warm_up(scene: Scene) -> None:
     """Let numba compile before the clock runs: with an empty cache that takes many seconds."""
     shapes = np.broadcast_to(np.eye(4), (1, int(scene.is_robot.sum()), 4, 4))
     shot = Shot(room_lens(32, 24), np.eye(4)[None], shapes)

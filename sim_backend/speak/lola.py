@@ -11,13 +11,14 @@ from hal.backends import OpenOptions, Ready
 from hal.errors import BackendError
 from hal.nao.postures import posture
 from hal.video.server import FrameServer
+from sim_backend.backend import warm_up
 from sim_backend.body import Body
 from sim_backend.camera import SimCamera
 from sim_backend.clocks import RealClock
 from sim_backend.eye import Eye
 from sim_backend.options import SimOptions, checked
 from sim_backend.room import furnished
-from sim_backend.scene import build_scene
+from sim_backend.scene import Scene, build_scene
 from sim_backend.speak.lola_body import JointWorld
 from sim_backend.speak.lola_server import LolaServer
 
@@ -36,6 +37,9 @@ def serve(
     if told.version != "v6":
         raise BackendError(f"LoLA is of the V6, not of the {told.version}")
     with ExitStack() as stack:
+        scene = build_scene(furnished(told.scenario, told.folder, told.seed), True)
+        if camera is not None:
+            warm_up(scene)
         world = JointWorld(
             told.scenario, told.version, told.seed, time.monotonic_ns, posture(POSTURE)
         )
@@ -43,7 +47,9 @@ def serve(
         stack.callback(clock.close)
         served: dict[str, object] = {"speaks": "lola", "socket": address}
         if camera is not None:
-            frames = FrameServer(_frame_address(camera), _eye(world, clock, options, told, stack))
+            frames = FrameServer(
+                _frame_address(camera), _eye(world, clock, scene, options, told, stack)
+            )
             stack.callback(frames.close)
             frames.start()
             served |= {
@@ -59,9 +65,13 @@ def serve(
 
 
 def _eye(
-    world: JointWorld, clock: RealClock, options: OpenOptions, told: SimOptions, stack: ExitStack
+    world: JointWorld,
+    clock: RealClock,
+    scene: Scene,
+    options: OpenOptions,
+    told: SimOptions,
+    stack: ExitStack,
 ) -> SimCamera:
-    scene = build_scene(furnished(told.scenario, told.folder, told.seed), True)
     body = Body(told.version)
     stack.callback(body.close)
     size = (options.width, options.height)
