@@ -1,0 +1,1 @@
+"""One head's camera: how it sits and how it maps, from a rectangle seen in many head poses."""

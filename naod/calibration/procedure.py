@@ -1,0 +1,130 @@
+"""The whole calibration with a robot: find the rectangle, go through head poses, fit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hal.protocols import Robot
+from hal.types import NaoVersion
+from naod.calibration.eyes import Eyes
+from naod.calibration.fit import Expected, Problem, first_estimate, fit, without_odd_views
+from naod.calibration.plan import grid, head_poses, rows_of
+from naod.calibration.record import Recorded, Recorder, Tell
+from naod.calibration.result import VIEWS_MIN, Calibration, CalibrationError, calibration
+from naod.calibration.rig import Rig
+from naod.config import CameraConfig, DaemonConfig
+from naod.geometry.camera import PinholeCamera
+from naod.geometry.transforms import Vector, inverse
+from naod.localisation.base_frame import T_torso_base
+from naod.localisation.body_model import BodyModel
+from naod.loop.equipment import camera_of, head_angles
+from naod.perception.colour_model import ColourModel
+from naod.pose.objects import Rectangle
+
+VIEWS = 16
+NEAR = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """How to go about it. `by_hand`: a person turns the head. `lens`: fit the intrinsics too."""
+
+    views: int = VIEWS
+    by_hand: bool = False
+    lens: bool = True
+
+
+def calibrate(
+    robot: Robot,
+    config: DaemonConfig,
+    model: ColourModel,
+    shape: Rectangle,
+    wanted: Wanted,
+    tell: Tell,
+) -> Calibration:
+    """Calibrate the camera of a robot that stands and sees the rectangle.
+
+    The head is turned back at the end. Raises CalibrationError, InputError, HalError.
+    """
+    camera = camera_of(config.camera, robot.info)
+    eyes = Eyes(config, model, shape, camera)
+    recorder = Recorder(robot, eyes, tell)
+    if wanted.by_hand:
+        tell(f"hold the head still in {wanted.views} poses, the rectangle wholly in view")
+        recorded = recorder.by_hand(wanted.views)
+        return evaluated(recorded, config.camera, robot.info.version, camera, shape, wanted.lens)
+    before = head_angles(robot.body.latest())
+    try:
+        recorded = _driven(recorder, config.camera, camera, shape, wanted.views)
+    finally:
+        robot.head.look(before, 0.5)
+    return evaluated(recorded, config.camera, robot.info.version, camera, shape, wanted.lens)
+
+
+def _driven(
+    recorder: Recorder,
+    config: CameraConfig,
+    camera: PinholeCamera,
+    shape: Rectangle,
+    views: int,
+) -> Recorded:
+    """A few views about the middle say how the camera sits, roughly; then all over the picture."""
+    first = recorder.here()
+    if isinstance(first, str):
+        raise CalibrationError(f"the rectangle is not found: {first}")
+    rig, correction, lens = _start(config, camera)
+    size = (camera.width, camera.height)
+    corners = first[0].edges.points_px
+    at = first_estimate(rig, [first[0]], correction, lens)
+    near = recorder.through(head_poses(rig, at, shape, grid(corners, size, 2, 2, NEAR), size))
+    if len(near.views) >= 3:
+        expected = Expected.of(lens, camera.width, known=True)
+        at = first_estimate(rig, near.views, correction, lens)
+        at = fit(Problem(rig, shape, near.views, expected), at).estimate
+        at = replace(at, heads_rad=np.zeros((1, 2)))
+    places = grid(corners, size, *rows_of(views - 4))
+    far = recorder.through(head_poses(rig, at, shape, places, size))
+    return Recorded(near.views + far.views, near.bodies + far.bodies)
+
+
+def evaluated(
+    recorded: Recorded,
+    config: CameraConfig,
+    version: NaoVersion,
+    camera: PinholeCamera,
+    shape: Rectangle,
+    lens: bool,
+) -> Calibration:
+    """Fit what was recorded. Raises CalibrationError, InputError."""
+    views = recorded.views
+    if len(views) < VIEWS_MIN:
+        raise CalibrationError(
+            f"the rectangle was seen in {len(views)} head poses, {VIEWS_MIN} are needed: "
+            "put it where the head can turn about it, well lit, in one plain colour"
+        )
+    base = T_torso_base(
+        BodyModel(version).frames(recorded.standing()), recorded.bodies[0].foot_load_kg
+    )
+    rig, correction, start = _start(config, camera)
+    expected = Expected.of(start, camera.width, not lens)
+    at = first_estimate(rig, views, correction, start)
+    fitted, kept = without_odd_views(rig, shape, views, expected, at)
+    if len(kept) < VIEWS_MIN:
+        raise CalibrationError(
+            f"only {len(kept)} of {len(views)} views go together: "
+            "the rectangle or the robot has moved"
+        )
+    left_out = len(views) - len(kept)
+    T_base_object = inverse(base) @ fitted.estimate.T_torso_object
+    size = (camera.width, camera.height)
+    return calibration(fitted, rig, size, len(kept), left_out, T_base_object)
+
+
+def _start(config: CameraConfig, camera: PinholeCamera) -> tuple[Rig, Vector, Vector]:
+    k1, *others = (float(v) for v in camera.distortion_array)
+    lens = np.array([camera.fx, camera.fy, camera.cx, camera.cy, k1])
+    correction = np.array([math.radians(v) for v in config.correction_deg])
+    return Rig(config.which, np.array(others)), correction, lens
