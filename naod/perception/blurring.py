@@ -17,6 +17,10 @@ Floats = NDArray[np.float32]
 
 _ZERO = np.array([0.0, 128.0, 128.0], dtype=np.float32)
 _RGB_FROM_YUV = np.linalg.inv(yuv_from_rgb(np.eye(3)) - _ZERO).astype(np.float32)
+_PER_LEVEL = 16
+_LIGHTS = np.interp(np.arange(255 * _PER_LEVEL + 1) / _PER_LEVEL, np.arange(256), LIGHT).astype(
+    np.float32
+)
 _ENTRIES = 4096
 _CURVE = np.interp(
     256.0 * np.sqrt(np.arange(_ENTRIES + 1) / _ENTRIES), np.arange(LEVEL.size), LEVEL
@@ -25,8 +29,8 @@ _CURVE = np.interp(
 
 def light_from_yuv(yuv: Floats) -> Floats:
     """(..., 3) Y U V, 8-bit levels, to linear light of red, green and blue, 0 to 1."""
-    rgb = np.clip((yuv - _ZERO) @ _RGB_FROM_YUV, 0.0, 255.0)
-    return np.interp(rgb, np.arange(256), LIGHT).astype(np.float32)
+    rgb = (yuv - _ZERO) @ _RGB_FROM_YUV
+    return _LIGHTS[np.clip(rgb * _PER_LEVEL + 0.5, 0.0, _LIGHTS.size - 1.0).astype(np.int32)]
 
 
 def yuv_from_light(light: Floats) -> Floats:

@@ -123,8 +123,12 @@ def _pixels(frame: NDArray[np.uint8], region: Region) -> NDArray[np.uint8]:
         raise InputError(f"region {_text(region)}: needs at least {PIXELS_MIN} pixels")
     if x < 0 or y < 0 or right > width or bottom > height:
         raise InputError(f"region {_text(region)}: outside the {width}x{height} picture")
-    yuv = yuv_from_yuyv(frame) if frame.shape[2] == 2 else frame
-    return yuv[y:bottom, x:right].reshape(-1, 3)
+    if frame.shape[2] == 3:
+        return frame[y:bottom, x:right].reshape(-1, 3)
+    # whole pairs, which share their chroma
+    left = x - x % 2
+    pairs = yuv_from_yuyv(frame[y:bottom, left : right + right % 2])
+    return pairs[:, x - left : right - left].reshape(-1, 3)
 
 
 def _text(region: Region) -> str:

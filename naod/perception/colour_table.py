@@ -27,7 +27,7 @@ Cells = NDArray[np.int16]
 
 def packed(table: Cells) -> str:
     """The text in MODEL.toml: little-endian int16, Y slowest and V fastest, zlib, base64."""
-    return base64.b64encode(zlib.compress(table.astype("<i2").tobytes(), 9)).decode()
+    return base64.b64encode(zlib.compress(table.astype("<i2").tobytes(), 6)).decode()
 
 
 def unpacked(text: str) -> Cells:
@@ -40,6 +40,18 @@ def unpacked(text: str) -> Cells:
     if len(data) != 2 * CELLS:
         raise InputError(f"table: holds {len(data)} bytes or more, not {2 * CELLS}")
     return np.frombuffer(data, dtype="<i2").astype(np.int16)
+
+
+def smoothed(counts: NDArray[np.float64], std_bins: float = 0.7) -> NDArray[np.float64]:
+    """Counts (CELLS,) shared out among the cells around by a Gaussian; none are lost."""
+    offsets = np.arange(BINS)[:, None] - np.arange(BINS)
+    kernel = np.exp(-0.5 * (offsets / std_bins) ** 2)
+    kernel /= kernel.sum(axis=0)
+    cube = counts.reshape(BINS, BINS * BINS)
+    for _ in range(3):
+        # each time the axis that was first goes last
+        cube = (kernel @ cube).reshape(BINS, BINS * BINS).T.reshape(BINS, BINS * BINS)
+    return cube.ravel()
 
 
 def cells_of(yuv: NDArray[np.float32]) -> NDArray[np.int64]:
