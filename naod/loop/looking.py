@@ -17,6 +17,9 @@ from naod.messages import WalkState
 
 SEARCH_S = 2.5 * DWELL_S * len(PLACES)
 """After so long the head rests; the object is still looked for where it points."""
+
+ASIDE = frozenset({"left", "right"})
+
 FRESH_NS = 500_000_000
 """A target seen within this time counts as in view."""
 
@@ -86,14 +89,17 @@ def _centre(equipment: Equipment, state: LoopState, sighting: Sighting, out: Out
 def _take_look(
     equipment: Equipment, state: LoopState, sighting: Sighting, centred: bool
 ) -> LoopState:
-    """Keep a look that was taken whole, centred, and after the robot came to rest (S3)."""
+    """Keep a look that was taken sharp, centred, and after the robot came to rest (S3).
+
+    An object whose upper or lower end is out of the picture will do: both sides say how far it is.
+    """
     settle_ns = int(equipment.config.approach.settle_s * 1e9)
     since = state.still_since_ns
     if since is None or sighting.stamp_ns < since + settle_ns:
         return state
     look, config = sighting.look, equipment.config.approach
-    whole = sighting.pose is not None and not sighting.pose.clipped
-    if look is None or not centred or not whole or look.blur_px > config.blur_max_px:
+    cut_aside = sighting.pose is None or not ASIDE.isdisjoint(sighting.pose.clipped)
+    if look is None or not centred or cut_aside or look.blur_px > config.blur_max_px:
         return replace(state, phase="centre") if state.phase == "look" else state
     kept = (*state.looks, look)[-config.looks_max :]
     return replace(state, looks=kept)

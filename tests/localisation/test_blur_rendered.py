@@ -127,3 +127,18 @@ def test_sigma_grows_with_it_and_covers_the_error(measured):
     assert sigmas[-1] > 2.0 * sigmas[0]
     for row in measured.values():
         assert row[:, 2].mean() < 2.0
+
+
+@pytest.mark.parametrize("side", ["top", "bottom"])
+def test_a_can_cut_off_above_or_below_is_placed_as_well(studio, segmenter, side):
+    """Up to half of it: such looks are taken."""
+    for n, (way_m, cut) in enumerate([(0.35, 0.2), (0.5, 0.3), (0.8, 0.4), (0.6, 0.5)]):
+        reach = 0.0575 / way_m
+        pitch = math.atan(240.0 / CAMERA.fy) - reach + 2.0 * reach * cut
+        T = eye(studio, way_m, 0.1, (-pitch if side == "top" else pitch, 0.0, 0.0))
+        yuyv = studio.frame_at(T, None, n)
+        pose = locate(yuyv, find_blob(segmenter.segment(yuyv), 12), Cylinder(), CAMERA)
+        assert pose.clipped == (side,)
+        gap = (pose.T_camera_object - inverse(T) @ studio.T_world_object)[:3, 3]
+        assert np.linalg.norm(gap) < 0.005 * way_m
+        assert gap @ np.linalg.solve(pose.covariance[:3, :3], gap) / 3.0 < 5.0

@@ -14,7 +14,7 @@ from naod.loop.types import Start
 class UnsureBench(Bench):
     """A bench whose looks are as unsure, and as blurred, as it is told."""
 
-    own_m, shared_m, blur_px = 1e-3, 0.0, 0.0
+    own_m, shared_m, blur_px, clipped = 1e-3, 0.0, 0.0, ()
 
     def _sighting(self):
         sighting = super()._sighting()
@@ -23,7 +23,8 @@ class UnsureBench(Bench):
         place = np.diag([1.0, 1.0, 1.0, 1e-4])
         own, shared = place * self.own_m**2, place * self.shared_m**2
         look = Look(self.now_ns, sighting.look.ego, own, shared, self.blur_px)
-        return replace(sighting, look=look, blur_px=self.blur_px)
+        pose = replace(sighting.pose, clipped=self.clipped)
+        return replace(sighting, look=look, pose=pose, blur_px=self.blur_px)
 
     def until_step(self):
         """The step, and how many looks there were before it."""
@@ -100,3 +101,16 @@ def test_blurred_looks_are_none():
     assert commands.state.target.found
     bench.blur_px = 9.5
     assert math.hypot(bench.until_step()[0].x) == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("clipped", [("left",), ("right",), ("top", "right")])
+def test_an_object_cut_aside_is_waited_for(clipped):
+    bench = begun(clipped=clipped)
+    bench.tick(ticks=60)
+    assert bench.state.looks == ()
+    assert bench.state.moves == 0
+
+
+@pytest.mark.parametrize("clipped", [("top",), ("bottom",)])
+def test_an_object_whose_end_is_out_of_the_picture_will_do(clipped):
+    assert begun(clipped=clipped).until_step()[0].x == pytest.approx(0.25)
