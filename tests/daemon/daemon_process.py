@@ -38,12 +38,18 @@ def naod(*words: str, timeout_s: float = 120.0) -> subprocess.CompletedProcess[s
 class Daemon:
     """`naod run` with a state folder; `ctl` are verbs from another process."""
 
-    def __init__(self, folder: Path, more: str = "", environment: dict[str, str] | None = None):
+    def __init__(
+        self,
+        folder: Path,
+        more: str = "",
+        environment: dict[str, str] | None = None,
+        backend: str = "sim",
+    ):
         self.folder = folder
         self.endpoint = f"tcp/127.0.0.1:{free_port()}"
         self.config = folder / "naod.toml"
         self.config.write_text(
-            f'[robot]\nstate_folder = "{folder / "state"}"\n'
+            f'[robot]\nstate_folder = "{folder / "state"}"\nbackend = "{backend}"\n'
             f'[bus]\nlisten = ["{self.endpoint}"]\n{more}'
         )
         self._environment = {**os.environ, **(environment or {})}
