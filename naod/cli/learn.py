@@ -26,7 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--model-kind",
         choices=KINDS,
         default=DEFAULT_KIND,
-        help="one Gaussian, or a table that knows blur and surroundings (default: %(default)s)",
+        help="the paper's one Gaussian, a mixture of as many as the colours need, or a table "
+        "that knows blur and surroundings (default: %(default)s)",
     )
     parser.add_argument("--json", action="store_true", help="one JSON document on stdout")
 

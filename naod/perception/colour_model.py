@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
@@ -53,8 +53,29 @@ class ColourTable(ColourModel, frozen=True, kw_only=True, tag="table"):
     table: str
 
 
+class Component(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One Gaussian of a mixture; the weights sum to 1."""
+
+    weight: Annotated[float, msgspec.Meta(gt=0.0, le=1.001)]
+    mean: Triple
+    covariance: tuple[Triple, Triple, Triple]
+
+
+class ColourMixture(ColourModel, frozen=True, kw_only=True, tag="mixture"):
+    """The Gaussian of all, and beside it those of `naod.perception.mixture`."""
+
+    components: Annotated[tuple[Component, ...], msgspec.Meta(min_length=1, max_length=32)]
+
+
 class _Kind(msgspec.Struct, frozen=True):
-    kind: Literal["gaussian", "table"] = "gaussian"
+    kind: Literal["gaussian", "mixture", "table"] = "gaussian"
+
+
+_TYPES: dict[str, type[ColourModel]] = {
+    "gaussian": ColourModel,
+    "mixture": ColourMixture,
+    "table": ColourTable,
+}
 
 
 def learn(frames: Sequence[NDArray[np.uint8]], region: Region) -> ColourModel:
@@ -67,7 +88,7 @@ def learn(frames: Sequence[NDArray[np.uint8]], region: Region) -> ColourModel:
     """
     if not frames:
         raise InputError("no frame to learn the colour from")
-    pixels = np.concatenate([_pixels(frame, region) for frame in frames])
+    pixels = np.concatenate([region_pixels(frame, region) for frame in frames])
     if (pixels == pixels[0]).all():
         y, u, v = (int(c) for c in pixels[0])
         raise InputError(
@@ -93,16 +114,9 @@ def load_model(path: Path) -> ColourModel:
     Raises InputError that names the file and what is wrong.
     """
     text = read_text(path)
-    table = parse_toml(text, _Kind, str(path)).kind == "table"
-    model: ColourModel = parse_toml(text, ColourTable if table else ColourModel, str(path))
-    values = np.array([model.mean, *model.covariance])
-    covariance = values[1:]
-    if not np.isfinite(values).all():
-        raise InputError(f"{path}: mean and covariance must be finite")
-    if not np.allclose(covariance, covariance.T, rtol=1e-6, atol=1e-6):
-        raise InputError(f"{path}: covariance is not symmetric")
-    if np.linalg.eigvalsh(covariance)[0] <= 0.0:
-        raise InputError(f"{path}: covariance is not positive definite")
+    model = parse_toml(text, _TYPES[parse_toml(text, _Kind, str(path)).kind], str(path))
+    for one in (model, *(model.components if isinstance(model, ColourMixture) else ())):
+        _check(np.array([one.mean, *one.covariance]), path)
     if isinstance(model, ColourTable):
         try:
             unpacked(model.table)
@@ -111,12 +125,24 @@ def load_model(path: Path) -> ColourModel:
     return model
 
 
+def _check(values: NDArray[np.float64], path: Path) -> None:
+    """Mean and covariance, (4, 3). Raises InputError."""
+    covariance = values[1:]
+    if not np.isfinite(values).all():
+        raise InputError(f"{path}: mean and covariance must be finite")
+    if not np.allclose(covariance, covariance.T, rtol=1e-6, atol=1e-6):
+        raise InputError(f"{path}: covariance is not symmetric")
+    if np.linalg.eigvalsh(covariance)[0] <= 0.0:
+        raise InputError(f"{path}: covariance is not positive definite")
+
+
 def save_model(path: Path, model: ColourModel) -> None:
     """Write MODEL.toml, whole or not at all. Raises InputError."""
     write_toml(path, model)
 
 
-def _pixels(frame: NDArray[np.uint8], region: Region) -> NDArray[np.uint8]:
+def region_pixels(frame: NDArray[np.uint8], region: Region) -> NDArray[np.uint8]:
+    """(n, 3) YUV of a region of a YUYV (H, W, 2) or YUV (H, W, 3) frame. Raises InputError."""
     height, width = frame.shape[:2]
     x, y, right, bottom = region.x, region.y, region.x + region.width, region.y + region.height
     if region.width < 1 or region.height < 1 or region.width * region.height < PIXELS_MIN:

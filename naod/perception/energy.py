@@ -13,8 +13,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.colour_model import ColourModel, ColourTable
-from naod.perception.colour_table import BINS, cell_colours, filled, look_up, unpacked
+from naod.perception.colour_model import ColourMixture, ColourModel, ColourTable
+from naod.perception.colour_table import BINS, STEPS_MAX, cell_colours, filled, look_up, unpacked
+from naod.perception.mixture import energies
 
 STEPS = 256
 """Integer steps per nat."""
@@ -27,8 +28,9 @@ class Singletons:
     """Energy of one pixel under a colour model against a constant background.
 
     `light_std` widens the Gaussian along the line of colours that one surface has in more or less
-    light, Y : U - 128 : V - 128 staying in proportion. A colour table decides by itself wherever it
-    has learnt something; `table` is (CELLS,) int16, empty for a Gaussian alone.
+    light, Y : U - 128 : V - 128 staying in proportion; so it does each of a mixture's. A colour
+    table decides by itself wherever it has learnt something. A mixture is made a table, one value
+    for each of its cells; `table` is (CELLS,) int16, empty for a Gaussian alone.
     """
 
     def __init__(
@@ -46,6 +48,10 @@ class Singletons:
             printed = np.empty((BINS * BINS, BINS), dtype=np.int32)
             self.differences(cell_colours(), printed)
             self.table = filled(unpacked(model.table), printed)
+        if isinstance(model, ColourMixture):
+            nats = energies(model, cell_colours().astype(np.float64), light_std)
+            steps = np.rint((nats - background_energy) * STEPS)
+            self.table = np.clip(steps, -STEPS_MAX, STEPS_MAX).astype(np.int16).ravel()
 
     def differences(self, yuv: NDArray[np.float32], out: NDArray[np.int32]) -> None:
         """Of each pixel of (h, w, 3) into (h, w) int32: negative where the object is likelier."""

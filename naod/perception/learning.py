@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from naod.perception.colour_model import ColourModel, Region, learn
 from naod.perception.colour_table_learning import learn_table
+from naod.perception.mixture import learn_mixture
 
-ModelKind = Literal["gaussian", "table"]
-KINDS: tuple[ModelKind, ...] = ("gaussian", "table")
+ModelKind = Literal["gaussian", "mixture", "table"]
+KINDS: tuple[ModelKind, ...] = ("gaussian", "mixture", "table")
 DEFAULT_KIND: ModelKind = "table"
 """The one that survives blur, many colours and another room; the paper's is the Gaussian."""
 
@@ -21,4 +22,6 @@ def learn_model(
     frames: Sequence[NDArray[np.uint8]], region: Region, kind: ModelKind = DEFAULT_KIND
 ) -> ColourModel:
     """From YUYV frames (H, W, 2) uint8. Raises InputError as `colour_model.learn` does."""
-    return learn_table(frames, region) if kind == "table" else learn(frames, region)
+    if kind == "table":
+        return learn_table(frames, region)
+    return learn_mixture(frames, region) if kind == "mixture" else learn(frames, region)
