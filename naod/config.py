@@ -120,6 +120,7 @@ class SegmentationConfig(_Section, frozen=True):
     `settled` and `sweeps_max`.
     `light_std`: relative change of brightness between learning and seeing, and over the object's
     own shades, that the colour model is widened by; 0 leaves it as learnt.
+    `presence_min`: probability from which the object counts as found.
     """
 
     width: Width = 160
@@ -130,6 +131,7 @@ class SegmentationConfig(_Section, frozen=True):
     settled: NotNegative = 1e-3
     sweeps_max: Count = 50
     pixels_min: Count = 12
+    presence_min: Fraction = 0.5
 
 
 class GazeConfig(_Section, frozen=True):

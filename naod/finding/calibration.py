@@ -1,0 +1,232 @@
+"""Fit the weights of `naod.finding.presence`: `python -m naod.finding.calibration`, by hand.
+
+Rooms are rendered, some without the object, some with other things of its colour. Every group of
+regions in a picture is a sample: it is the object, or it is not. Two rounds: the second one counts
+most what the first would have chosen. The rooms of `UNSEEN` are only to tell how well it went.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from naod.config import SegmentationConfig
+from naod.files import write_whole
+from naod.finding.find import Scored, scored_groups
+from naod.finding.presence import CASES, TERMS, WEIGHTS, CaseWeights, Weights, terms
+from naod.finding.regression import fit_logistic, sigmoid
+from naod.finding.rooms import SIZE, Room, RoomSpec, Thing, View
+from naod.perception.colour_model import Region
+from naod.perception.learning import KINDS, learn_model
+from naod.perception.segmenter import Segmenter
+from naod.pose.objects import ObjectShape
+
+Floats = NDArray[np.float64]
+
+THINGS: tuple[Thing, ...] = ("can", "ribbon", "board")
+LEARN, UNSEEN = range(100, 136), range(300, 324)
+VIEWS = 14
+LIGHTS = (0.6, 0.8, 1.0, 1.3, 1.5)
+OTHERS = (0, 0, 0, 1, 2, 3)
+
+IS_IT, IS_NOT = 0.6, 0.4
+"""Overlap of hulls above which a group is the object, and below which it is not."""
+
+AGAINST = 0.1
+"""How much a group counts that would not have been chosen."""
+
+HEADER = """# Log-odds that a group of regions is the object; see naod/finding/presence.py.
+# Made by `python -m naod.finding.calibration`.
+"""
+
+SIGNS = {"colour": 1, "ring": -1, "lack": -1, "gap": -1, "aspect": -1, "turn": -1}
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A group of regions. `picture` tells those of one picture; `overlap` is that of hulls.
+
+    `alike`: other things of the object's colour stand in the room.
+    """
+
+    picture: int
+    case: str
+    row: Floats
+    offset: float
+    overlap: float
+    alike: bool
+
+    @property
+    def told(self) -> bool | None:
+        """Whether it is the object; None if that is a matter of taste."""
+        return True if self.overlap > IS_IT else False if self.overlap < IS_NOT else None
+
+
+def specs(seeds: Sequence[int]) -> list[RoomSpec]:
+    """One room for each seed: things in turn, every other three of them without the object."""
+    made = []
+    for n, seed in enumerate(seeds):
+        rng = np.random.default_rng([seed, 3])
+        thing = THINGS[n % len(THINGS)]
+        made.append(
+            RoomSpec(
+                seed=seed,
+                thing=thing,
+                present=n // len(THINGS) % 2 == 0,
+                others=int(rng.choice(OTHERS)),
+                floor=thing != "board" and bool(rng.random() < 0.4),
+                light=float(rng.choice(LIGHTS)),
+            )
+        )
+    return made
+
+
+class Learnt:
+    """Each thing's colour as learnt in one room, by every kind of model."""
+
+    def __init__(self, folder: Path, seed: int = 0) -> None:
+        self.shown: dict[Thing, tuple[NDArray[np.uint8], Region]] = {
+            thing: Room(RoomSpec(seed, thing), folder).shown() for thing in THINGS
+        }
+        self.settings = SegmentationConfig()
+        self.segmenters = {
+            thing: [
+                Segmenter(learn_model([picture], region, kind), self.settings, SIZE)
+                for kind in KINDS
+            ]
+            for thing, (picture, region) in self.shown.items()
+        }
+
+
+def samples_of(room: Room, views: Sequence[View], learnt: Learnt, first: int) -> Iterator[Sample]:
+    """Every group in every view, with the shape known and unknown; pictures count from `first`."""
+    for view in views:
+        for segmenter in learnt.segmenters[room.spec.thing]:
+            segmentation = segmenter.segment(view.yuyv)
+            truth = None if view.mask is None else _hull(_reduced(view.mask, segmentation.scale))
+            shapes: tuple[ObjectShape | None, ...] = (room.shape, None)
+            for shape in shapes:
+                camera = None if shape is None else room.camera
+                found = scored_groups(segmentation, shape, camera, None, learnt.settings.pixels_min)
+                first += 1
+                if found is not None:
+                    yield from _samples(found, truth, shape is not None, first, room.spec.others)
+
+
+def _samples(
+    found: Scored, truth: NDArray[np.bool_] | None, known: bool, picture: int, others: int
+) -> Iterator[Sample]:
+    rows = terms(found.measures)
+    for k in range(len(rows)):
+        overlap = 0.0
+        if truth is not None:
+            own = _hull(found.wanted(k)[found.labels])
+            overlap = np.count_nonzero(own & truth) / np.count_nonzero(own | truth)
+        case = ("cut" if found.cuts[k] else "whole") if known else "unknown"
+        yield Sample(picture, case, rows[k], float(found.offsets[k]), overlap, others > 0)
+
+
+def fitted(samples: Sequence[Sample]) -> dict[str, Floats]:
+    """Weights (len(TERMS),) of each case."""
+    first = {case: _fit(samples, case, None) for case in CASES}
+    chosen = {id(sample) for sample in chosen_of(samples, first)}
+    return {case: _fit(samples, case, chosen) for case in CASES}
+
+
+def chosen_of(samples: Sequence[Sample], weights: dict[str, Floats]) -> list[Sample]:
+    """The likeliest group of each picture."""
+    best: dict[int, tuple[float, Sample]] = {}
+    for sample in samples:
+        odds = float(sample.row @ weights[sample.case]) + sample.offset
+        if sample.picture not in best or odds > best[sample.picture][0]:
+            best[sample.picture] = (odds, sample)
+    return [sample for _, sample in best.values()]
+
+
+def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Floats:
+    """Nobody could tell things of one colour apart without shape, or cut off: those are left out.
+
+    Before anything was chosen, objects and the rest count alike.
+    """
+    kept = [s for s in samples if s.case == case and s.told is not None]
+    kept = [s for s in kept if case == "whole" or not s.alike]
+    told = np.array([float(bool(s.told)) for s in kept])
+    if chosen is None:
+        counts = np.where(told > 0.0, 0.5 / max(told.sum(), 1.0), 0.5 / max((1 - told).sum(), 1.0))
+        counts *= len(kept)
+    else:
+        counts = np.array([1.0 if s.told or id(s) in chosen else AGAINST for s in kept])
+    signs = np.array([SIGNS.get(name, 0) for name in TERMS], dtype=np.float64)
+    return fit_logistic(np.array([s.row for s in kept]), told, counts, signs)
+
+
+def reliability(samples: Sequence[Sample], weights: dict[str, Floats]) -> tuple[float, Floats]:
+    """Brier score of what is chosen, and a table (5, 3): said, true, and how many, by fifths."""
+    chosen = [s for s in chosen_of(samples, weights) if s.told is not None]
+    odds = np.array([float(s.row @ weights[s.case]) + s.offset for s in chosen])
+    said, true = sigmoid(odds), np.array([float(bool(s.told)) for s in chosen])
+    table = np.zeros((5, 3))
+    for n in range(5):
+        inside = np.minimum((said * 5).astype(np.int64), 4) == n
+        if inside.any():
+            table[n] = said[inside].mean(), true[inside].mean(), np.count_nonzero(inside)
+    return float(np.mean((said - true) ** 2)), table
+
+
+def _reduced(mask: NDArray[np.uint8], scale: float) -> NDArray[np.bool_]:
+    block = round(scale)
+    height, width = mask.shape[0] // block, mask.shape[1] // block
+    blocks = mask[: height * block, : width * block].reshape(height, block, width, block)
+    return np.asarray(blocks.mean(axis=(1, 3)) > 127.0)
+
+
+def _hull(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    filled = np.zeros(inside.shape, dtype=np.uint8)
+    points = np.argwhere(inside)[:, ::-1].astype(np.int32)
+    if len(points):
+        cv2.fillConvexPoly(filled, cv2.convexHull(points), 1)
+    return filled > 0
+
+
+def gathered(seeds: Sequence[int], views: int, folder: Path) -> list[Sample]:
+    """Samples of the rooms of these seeds, all colours learnt in one other room."""
+    learnt = Learnt(folder)
+    samples: list[Sample] = []
+    for n, spec in enumerate(specs(seeds)):
+        room = Room(spec, folder)
+        samples += samples_of(room, list(room.views(views)), learnt, 1000 * n)
+    return samples
+
+
+def main() -> None:
+    """Fit, write the weights, tell how well they do in rooms not used."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        weights = fitted(gathered(LEARN, VIEWS, Path(folder)))
+        unseen = gathered(UNSEEN, VIEWS, Path(folder))
+    rounded = {case: np.round(weights[case], 3) for case in CASES}
+    struct = {case: CaseWeights(*(float(w) for w in rounded[case])) for case in CASES}
+    write_whole(WEIGHTS, (HEADER + _text(Weights(**struct))).encode())
+    brier, table = reliability(unseen, rounded)
+    print(f"Brier score in unseen rooms: {brier:.3f}")
+    for said, true, count in table:
+        print(f"said {said:.2f}, true {true:.2f}, {count:.0f} pictures")
+
+
+def _text(weights: Weights) -> str:
+    lines = []
+    for case, values in msgspec.to_builtins(weights).items():
+        lines += ["", f"[{case}]", *(f"{name} = {value}" for name, value in values.items())]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    main()
