@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.lola.layout import SENSOR_BYTES, from_lola
-from hal.video.address import Address, forget, listening
+from hal.video.address import forget, listening, parse_address
 from sim_backend.speak.lola_body import JointWorld
 from sim_backend.speak.lola_sensing import sensor_message
 from sim_backend.speak.lola_wire import ActuatorMessage, ActuatorStream, WireError
 
 PERIOD_NS = 12_000_000
-READ_BYTES = 65536
+READ_BYTES, READS_A_CYCLE = 65536, 8
 SEND_BUFFER_BYTES = 16 * SENSOR_BYTES
 
 
@@ -34,7 +34,7 @@ class LolaServer:
     def __init__(self, path: str, world: JointWorld, say: Callable[[str], None]) -> None:
         """Listens at once. Raises BackendError when it cannot."""
         self._world, self._say = world, say
-        self._listener, self._address = listening(Address(path=path))
+        self._listener, self._address = listening(parse_address(f"unix:{path}"))
         self._listener.setblocking(False)
         self._client: socket.socket | None = None
         self._stream = ActuatorStream()
@@ -62,9 +62,9 @@ class LolaServer:
             forget(self._address)
 
     def _cycle(self) -> None:
-        self._accept()
         if self._client is not None:
             self._read(self._client)
+        self._accept()
         if self._client is not None and not self._ignored:
             self._write(self._client)
 
@@ -81,18 +81,22 @@ class LolaServer:
             self._say("a client has connected")
 
     def _read(self, client: socket.socket) -> None:
-        try:
-            data = client.recv(READ_BYTES)
-        except BlockingIOError:
-            return
-        except OSError:
-            # it went with messages of ours unread; its own have all been read by now
-            data = b""
-        if not data:
-            self._hang_up("the client has gone")
-            return
-        if self._ignored:
-            return
+        for _ in range(READS_A_CYCLE):
+            if self._client is not client:
+                return
+            try:
+                data = client.recv(READ_BYTES)
+            except BlockingIOError:
+                return
+            except OSError:
+                # it went with messages of ours unread; its own have all been read by now
+                data = b""
+            if not data:
+                self._hang_up("the client has gone")
+            elif not self._ignored:
+                self._take(data)
+
+    def _take(self, data: bytes) -> None:
         try:
             for message in self._stream.feed(data):
                 self._obey(message)

@@ -19,6 +19,7 @@ from sim_backend.speak.naoqi_options import PeerOptions, split
 DEFAULT_URL = "tcp://127.0.0.1:9559"
 PAUSE_S = 0.5
 """How long a restart takes."""
+SHORT_S = 0.1
 
 
 def serve(
@@ -68,9 +69,12 @@ def _serve(
             stop.wait(PAUSE_S)
             restart.clear()
             session, _ = _listen(robot, inner, restart)
+    robot.dismiss()
     if gate is not None:
         gate.close()
     session.close()
+    # what was called just before the end returns meanwhile
+    threading.Event().wait(SHORT_S)
 
 
 def _listen(robot: Any, url: str, restart: threading.Event) -> tuple[Any, list[str]]:

@@ -71,7 +71,8 @@ class Motion:
     def wakeUp(self) -> bool:
         """Motors on; blocks until the robot stands."""
         self._robot.enter("ALMotion.wakeUp")
-        self._robot.closing.wait(WAKE_S)
+        with self._robot.blocking():
+            self._robot.closing.wait(WAKE_S)
         self._robot.set_motors(True)
         return True
 
@@ -99,7 +100,8 @@ class Motion:
 
     def stiffnessInterpolation(self, names: object, values: object, times: Any) -> None:
         """Blocks while it ramps; here it jumps at the end."""
-        self._robot.closing.wait(float(times))
+        with self._robot.blocking():
+            self._robot.closing.wait(float(times))
         self.setStiffnesses(names, values)
 
     def moveInit(self) -> None:
@@ -112,12 +114,16 @@ class Motion:
         del config
         if self._robot.objection() is not None:
             return False
+        with self._robot.blocking():
+            return self._walked(PlanarMotion(float(x), float(y), float(theta)))
+
+    def _walked(self, way: PlanarMotion) -> bool:
         order = self._next_order()
         self._robot.closing.wait(self._robot.told.move_begins_s)
         if order != self._order:
             return False
         try:
-            self._walk.move_to(PlanarMotion(float(x), float(y), float(theta)), LONG_S)
+            self._walk.move_to(way, LONG_S)
         except HalError:
             return False
         while order == self._order and not self._robot.closing.wait(TICK_S):
@@ -145,8 +151,9 @@ class Motion:
         self._robot.enter("ALMotion.stopMove")
         self._next_order()
         self._walk.stop()
-        while self._walk.status().moving and not self._robot.closing.wait(TICK_S):
-            pass
+        with self._robot.blocking():
+            while self._walk.status().moving and not self._robot.closing.wait(TICK_S):
+                pass
         return True
 
     def moveIsActive(self) -> bool:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +20,7 @@ from sim_backend.speak.naoqi_options import PeerOptions
 
 CYCLE_NS = 20_000_000
 STIFFNESS_MIN = 0.6
+DISMISS_S = 3.0
 _LEGS = [n for n, name in enumerate(JOINT_NAMES) if "Hip" in name or "Knee" in name]
 _LEGS += [n for n, name in enumerate(JOINT_NAMES) if "Ankle" in name]
 
@@ -52,6 +55,8 @@ class PeerRobot:
         self.sim = SimRobot(replace(options, version=sim.version), sim)
         self.closing = threading.Event()
         self.lock = threading.RLock()
+        self._idle = threading.Condition(self.lock)
+        self._waiting = 0
         self.awake = not told.resting
         self.stiffness: NDArray[np.float64] = np.full(len(JOINT_NAMES), float(self.awake))
         self.life = told.life
@@ -71,6 +76,24 @@ class PeerRobot:
             text = self.refusals.get(name)
         if text is not None:
             raise RuntimeError(text)
+
+    @contextmanager
+    def blocking(self) -> Iterator[None]:
+        """Around a method that waits: the services are closed only after it."""
+        with self.lock:
+            self._waiting += 1
+        try:
+            yield
+        finally:
+            with self._idle:
+                self._waiting -= 1
+                self._idle.notify_all()
+
+    def dismiss(self) -> None:
+        """Let every method that waits return: an interpreter must not end under one."""
+        self.closing.set()
+        with self._idle:
+            self._idle.wait_for(lambda: self._waiting == 0, DISMISS_S)
 
     def measured(self) -> BodyState:
         """The body as ALMotion's last cycle measured it."""
