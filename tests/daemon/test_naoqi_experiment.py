@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from daemon_process import NAOD, Daemon
+from daemon_process import NAOD, Daemon, Watch
 
 from hal.backends import OpenOptions, open_robot
 
