@@ -15,8 +15,8 @@ from naod.cli.output import Progress, print_json
 from naod.cli.pictures import VIDEOS, Picture, find_files, read_image, read_pictures
 from naod.cli.segment import Segmenters
 from naod.errors import InputError
+from naod.finding.find import find_object
 from naod.geometry.camera import PinholeCamera, load_camera
-from naod.perception.blob import find_blob
 from naod.perception.colour_model import load_model
 from naod.pose.locate import locate, locate_mask
 from naod.pose.objects import ObjectShape, load_object
@@ -71,8 +71,11 @@ def _locator(args: argparse.Namespace, shape: ObjectShape, camera: PinholeCamera
 
     def with_model(picture: Picture, _: NDArray[np.uint8] | None) -> ObjectPose | None:
         segmenter = segmenters.of(picture)
-        blob = find_blob(segmenter.segment(picture.yuyv), segmenter.settings.pixels_min)
-        return None if blob is None else locate(picture.yuyv, blob, shape, camera, estimator)
+        segmentation = segmenter.segment(picture.yuyv)
+        found = find_object(segmentation, shape, camera, None, segmenter.settings)
+        if found is None:
+            return None
+        return locate(picture.yuyv, found.blob, shape, camera, estimator)
 
     return with_model
 

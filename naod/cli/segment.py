@@ -15,7 +15,7 @@ from naod.cli.pictures import Picture, find_files, read_pictures
 from naod.config import SegmentationConfig
 from naod.errors import InputError
 from naod.files import write_whole
-from naod.perception.blob import find_blob
+from naod.finding.find import likeliest
 from naod.perception.colour_model import ColourModel, load_model
 from naod.perception.fullsize import full_mask
 from naod.perception.segmenter import Segmenter
@@ -42,7 +42,7 @@ class Segmenters:
         size = picture.padded_size
         if size not in self._by_size:
             segmenter = Segmenter(self._model, self._settings, size)
-            find_blob(segmenter.segment(picture.yuyv))
+            likeliest(segmenter.segment(picture.yuyv), None, None, None, 1)
             self._by_size[size] = segmenter
         return self._by_size[size]
 
@@ -78,16 +78,18 @@ def _spare_inputs(files: list[Path], out: Path) -> None:
 def _segment(segmenter: Segmenter, picture: Picture) -> tuple[dict[str, object], NDArray[np.uint8]]:
     start = time.perf_counter()
     segmentation = segmenter.segment(picture.yuyv)
-    blob = find_blob(segmentation, segmenter.settings.pixels_min)
+    settings = segmenter.settings
+    best = likeliest(segmentation, None, None, None, settings.pixels_min)
     elapsed = time.perf_counter() - start
     labels = full_mask(segmenter, segmentation, picture.yuyv)[:, : picture.width]
     line: dict[str, object] = {
         "input": picture.source,
-        "found": blob is not None,
+        "found": best is not None and best.probability >= settings.presence_min,
         "pixels": int(np.count_nonzero(labels)),
         "energy": segmentation.energy,
         "iterations": segmentation.iterations,
         "ms": round(elapsed * 1e3, 3),
+        "probability": round(best.probability if best else 0.0, 4),
     }
     return line, np.ascontiguousarray(labels * np.uint8(255))
 

@@ -29,7 +29,9 @@ def test_masks_and_lines(capfd, tmp_path, model):
     assert [line["input"] for line in lines] == inputs
     assert [line["found"] for line in lines] == [True, True, False]
     for line, box in zip(lines[:2], (BOX, (10, 10, 60, 40)), strict=True):
-        assert list(line) == ["input", "found", "pixels", "energy", "iterations", "ms"]
+        promised = ["input", "found", "pixels", "energy", "iterations", "ms"]
+        assert list(line) == [*promised, "probability"]
+        assert line["probability"] > 0.5
         stem = line["input"].rsplit("/", 1)[1][:1]
         image = cv2.imread(str(out / f"{stem}.png"), cv2.IMREAD_UNCHANGED)
         assert set(np.unique(image)) == {0, 255}
@@ -38,6 +40,7 @@ def test_masks_and_lines(capfd, tmp_path, model):
         assert isinstance(line["iterations"], int)
         assert line["ms"] > 0.0
     assert lines[2]["pixels"] == 0
+    assert lines[2]["probability"] == 0.0
     assert (out / "c.png").exists()
 
 
