@@ -67,7 +67,7 @@ def _not_finite(tree: object, path: tuple[str, ...]) -> tuple[str, ...] | None:
     return next((odd for odd in found if odd is not None), None)
 
 
-def write_whole(path: Path, data: bytes | str) -> None:
+def write_whole(path: Path, data: bytes | str, mode: int = 0o644) -> None:
     """Write a file whole or not at all. Raises InputError when the place cannot be written."""
     content = data.encode() if isinstance(data, str) else data
     try:
@@ -78,7 +78,7 @@ def write_whole(path: Path, data: bytes | str) -> None:
                 file.write(content)
                 file.flush()
                 os.fsync(file.fileno())
-            os.chmod(temporary, 0o644)
+            os.chmod(temporary, mode)
             os.replace(temporary, path)
         except BaseException:
             Path(temporary).unlink(missing_ok=True)
@@ -108,6 +108,8 @@ def _toml_value(value: object) -> str:
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml_value(v) for v in value) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{k} = {_toml_value(v)}" for k, v in value.items()) + "}"
     if isinstance(value, str):
         return msgspec.json.encode(value).decode()
     return repr(value)
