@@ -12,8 +12,10 @@ from naod.localisation.ego import ego_pose
 from naod.localisation.placement import (
     CLOCK_JITTER_S,
     CLOCK_OFFSET_S,
+    COMMON_SHARE,
     JITTER_RAD,
     LEANING_RAD,
+    SHARP_PX,
     blurred,
     placed,
     turned,
@@ -26,14 +28,8 @@ T_BASE_CAMERA = transform(
 T_CAMERA_OBJECT = transform(rot_x(math.pi) @ rot_z(0.2), (0.05, 0.1, 0.9))
 
 
-def pose(sigma=1e-3, common=0.0):
-    return ObjectPose(
-        T_CAMERA_OBJECT,
-        np.eye(6) * (sigma**2 + common**2),
-        np.zeros((4, 2)),
-        "exact",
-        common=np.eye(6) * common**2,
-    )
+def pose(sigma=1e-3):
+    return ObjectPose(T_CAMERA_OBJECT, np.eye(6) * sigma**2, np.zeros((4, 2)), "exact")
 
 
 def test_a_small_turn_moves_the_object_as_computed():
@@ -67,11 +63,20 @@ def test_own_and_shared_are_what_turning_the_body_at_random_gives():
 
 
 def test_what_pictures_share_stays_apart():
-    look = placed(0, pose(sigma=0.002, common=0.01), T_BASE_CAMERA).look()
+    look = placed(0, pose(sigma=0.01), T_BASE_CAMERA).look()
     bare = placed(0, pose(sigma=0.0), T_BASE_CAMERA).look()
-    assert np.diag(look.covariance - bare.covariance)[:3] == pytest.approx(0.002**2)
-    assert np.diag(look.shared - bare.shared)[:3] == pytest.approx(0.01**2)
-    assert look.total == pytest.approx(look.covariance + look.shared)
+    assert np.diag(look.shared - bare.shared)[:3] == pytest.approx(COMMON_SHARE * 1e-4)
+    assert np.diag(look.total - bare.total)[:3] == pytest.approx(1e-4)
+
+
+def test_blur_adds_to_what_is_each_picture_s_own():
+    sharp, smeared = (placed(0, pose(), T_BASE_CAMERA, None, px) for px in (0.0, 10.0))
+    assert smeared.shared == pytest.approx(sharp.shared)
+    grown = np.diag(smeared.own - sharp.own)
+    assert grown == pytest.approx(1e-6 * (10.0 / SHARP_PX) ** 2)
+    seen = placed(0, pose(), T_BASE_CAMERA, None, 10.0, 10.0)
+    assert seen.own == pytest.approx(sharp.own)
+    assert seen.blur_px == 10.0
 
 
 def test_a_head_that_turns_makes_the_time_matter():
