@@ -21,6 +21,7 @@ COMMANDS: dict[str, str] = {
     "robot": "the simulated robot as a peer that speaks LoLA or NAOqi",
     "run": "the daemon",
     "ctl": "remote control of a running daemon",
+    "calibrate": "one head's camera correction and intrinsics from a printed rectangle",
     "bench": "benchmarks, with peers in the same run",
 }
 """Each lives in `naod.cli.<name>` with `add_arguments(parser)` and `run(args) -> int`."""
