@@ -14,14 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from naod.config import SegmentationConfig
 from naod.files import write_whole
 from naod.finding.find import Scored, scored_groups
-from naod.finding.presence import CASES, TERMS, WEIGHTS, CaseWeights, Weights, terms
+from naod.finding.presence import CASES, TERMS, WEIGHTS, terms
 from naod.finding.regression import fit_logistic, sigmoid
 from naod.finding.rooms import SIZE, Room, RoomSpec, Thing, View
 from naod.perception.colour_model import Region
@@ -46,6 +45,9 @@ AGAINST = 0.1
 HEADER = """# Log-odds that a group of regions is the object; see naod/finding/presence.py.
 # Made by `python -m naod.finding.calibration`.
 """
+
+ALIKE = 0.25
+"""How much a cut region counts in a room with other things of the object's colour."""
 
 SIGNS = {"colour": 1, "ring": -1, "lack": -1, "gap": -1, "aspect": -1, "turn": -1}
 
@@ -152,18 +154,20 @@ def chosen_of(samples: Sequence[Sample], weights: dict[str, Floats]) -> list[Sam
 
 
 def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Floats:
-    """Nobody could tell things of one colour apart without shape, or cut off: those are left out.
+    """Weights of a case; before anything was chosen, objects and the rest count alike.
 
-    Before anything was chosen, objects and the rest count alike.
+    Things of one colour cannot be told apart without a shape: those are left out there. Cut off
+    they hardly can: those count less, or whatever the border cuts would be lost.
     """
     kept = [s for s in samples if s.case == case and s.told is not None]
-    kept = [s for s in kept if case == "whole" or not s.alike]
+    kept = [s for s in kept if case != "unknown" or not s.alike]
     told = np.array([float(bool(s.told)) for s in kept])
     if chosen is None:
         counts = np.where(told > 0.0, 0.5 / max(told.sum(), 1.0), 0.5 / max((1 - told).sum(), 1.0))
         counts *= len(kept)
     else:
         counts = np.array([1.0 if s.told or id(s) in chosen else AGAINST for s in kept])
+    counts *= [ALIKE if case == "cut" and s.alike else 1.0 for s in kept]
     signs = np.array([SIGNS.get(name, 0) for name in TERMS], dtype=np.float64)
     return fit_logistic(np.array([s.row for s in kept]), told, counts, signs)
 
@@ -213,18 +217,19 @@ def main() -> None:
         weights = fitted(gathered(LEARN, VIEWS, Path(folder)))
         unseen = gathered(UNSEEN, VIEWS, Path(folder))
     rounded = {case: np.round(weights[case], 3) for case in CASES}
-    struct = {case: CaseWeights(*(float(w) for w in rounded[case])) for case in CASES}
-    write_whole(WEIGHTS, (HEADER + _text(Weights(**struct))).encode())
+    write_whole(WEIGHTS, HEADER + text_of(rounded))
     brier, table = reliability(unseen, rounded)
     print(f"Brier score in unseen rooms: {brier:.3f}")
     for said, true, count in table:
         print(f"said {said:.2f}, true {true:.2f}, {count:.0f} pictures")
 
 
-def _text(weights: Weights) -> str:
+def text_of(weights: dict[str, Floats]) -> str:
+    """`weights.toml` without its heading."""
     lines = []
-    for case, values in msgspec.to_builtins(weights).items():
-        lines += ["", f"[{case}]", *(f"{name} = {value}" for name, value in values.items())]
+    for case, values in weights.items():
+        named = zip(TERMS, values.tolist(), strict=True)
+        lines += ["", f"[{case}]", *(f"{name} = {value}" for name, value in named)]
     return "\n".join(lines) + "\n"
 
 
