@@ -58,6 +58,11 @@ class Body:
         self._poll()
         self._thread.start()
 
+    @property
+    def session(self) -> Session:
+        """The connection. Raises NotConnectedError."""
+        return self._channel.session
+
     def latest(self) -> BodyState:
         """The newest measurement; while the connection is cut it grows old.
 

@@ -32,6 +32,9 @@ SETTLE_S = 1.0
 BODY_S = 0.1
 NONE_MAX = 60
 """So many askings in a row without a picture, and the camera is subscribed anew."""
+DOUBTS_MAX = 10
+"""So many pictures in a row from an impossible time, and their clock is another one. A single one
+was only long under way."""
 FAILED = 10
 """A refused asking counts as so many."""
 EXPOSURE_S = 0.010
@@ -68,6 +71,7 @@ class NaoqiCamera:
         self._subscribed_s = 0.0
         self._robot_ns = 0
         self._none = 0
+        self._doubts = 0
         self._arrival = EarliestArrival(round(1e9 / fps))
         self.locked: Locked | None = None
         self.other_clock = False
@@ -179,7 +183,7 @@ class NaoqiCamera:
         self._handle, self._subscribed_s = handle, time.monotonic()
         self._robot_ns, self._none = 0, 0
         self.locked = None
-        self.other_clock = False
+        self.other_clock, self._doubts = False, 0
         self._arrival.forget()
 
     def _forget_stale(self, session: Session) -> None:
@@ -230,6 +234,8 @@ class NaoqiCamera:
     def _hand_in(self, picture: Picture, heard_ns: int) -> None:
         after_ns = round(STAMP_AFTER_MIDDLE_S[self._camera] * 1e9)
         offset_ns = self._offset_ns(picture.stamp_ns, heard_ns)
+        if offset_ns is None:
+            return
         stamp_ns = min(picture.stamp_ns - offset_ns, heard_ns) - after_ns
         # a picture is of use only together with the joints at its time
         self._await_body(stamp_ns, BODY_S)
@@ -240,19 +246,22 @@ class NaoqiCamera:
             self._frame = Frame(stamp_ns, picture.yuyv, self._camera, EXPOSURE_S, self._sequence)
             self._news.notify_all()
 
-    def _offset_ns(self, stamp_ns: int, heard_ns: int) -> int:
-        """The pictures' clock minus ours."""
+    def _offset_ns(self, stamp_ns: int, heard_ns: int) -> int | None:
+        """The pictures' clock minus ours; None for a picture of which that is in doubt."""
         self._arrival.add(stamp_ns, heard_ns)
         known = self._clock_offset()
         if known is not None and not self.other_clock:
             offset_ns, uncertainty_ns = known
             if is_plausible(heard_ns - (stamp_ns - offset_ns), uncertainty_ns):
+                self._doubts = 0
                 return offset_ns
+            self._doubts += 1
+            if self._doubts < DOUBTS_MAX:
+                return None
             log.warning("the pictures' clock is not ALMemory's; aligned by their arrival instead")
             self.other_clock = True
         estimate = self._arrival.estimate()
-        assert estimate is not None
-        return estimate[0]
+        return None if estimate is None else estimate[0]
 
     def _let_go(self, session: Session) -> None:
         if self.locked is not None:

@@ -39,6 +39,12 @@ KEYS: tuple[str, ...] = (
     CONTACT_KEY,
 )
 
+
+def temperature_status_key(joint: str) -> str:
+    """0 when a joint's temperature is well."""
+    return f"{_DEVICE}/{joint}/Temperature/Sensor/Status"
+
+
 LYING_RAD = math.radians(60.0)
 """A torso that leans more than this has fallen, whatever the events say."""
 CONTACT_KG = 0.2

@@ -8,9 +8,11 @@ from collections.abc import Callable
 
 from hal.backends import OpenOptions
 from hal.errors import BackendError, HalError
+from hal.health import Finding
 from hal.naoqi.body import Body
 from hal.naoqi.camera import NaoqiCamera
 from hal.naoqi.channel import Channel
+from hal.naoqi.examination import findings
 from hal.naoqi.guard import Guard
 from hal.naoqi.head import NaoqiHead
 from hal.naoqi.life import Household
@@ -105,6 +107,15 @@ class NaoqiRobot:
     def guard(self) -> Guard:
         """The walk's watchdog."""
         return self._guard
+
+    def examine(self) -> list[Finding]:
+        """What is worth telling; see `hal.health.Examined`."""
+        try:
+            session = self._body.session
+        except HalError as error:
+            advice = "does NAOqi run there, and is the network well?"
+            return [Finding("naoqi", "fail", str(error), advice)]
+        return findings(session, self._body, self._walk, self._camera, self._guard)
 
     def close(self) -> None:
         """Stop; put everything back; let go. May be called twice."""

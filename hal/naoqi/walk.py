@@ -62,6 +62,7 @@ class NaoqiWalk:
         self._turn = 0
         self.readiness = Readiness()
         self.error: str | None = "not connected yet"
+        self.refusal: str | None = None
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._run, name="naoqi-walk", daemon=True)
 
@@ -152,6 +153,22 @@ class NaoqiWalk:
         self._channel.close()
 
     def _begin(
+        self,
+        method: str,
+        sent: PlanarMotion,
+        told: PlanarMotion,
+        valid_for_s: float,
+        *,
+        ends_itself: bool,
+    ) -> None:
+        try:
+            self._send(method, sent, told, valid_for_s, ends_itself=ends_itself)
+        except MotionRefusedError as error:
+            self.refusal = str(error)
+            raise
+        self.refusal = None
+
+    def _send(
         self,
         method: str,
         sent: PlanarMotion,

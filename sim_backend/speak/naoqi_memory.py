@@ -30,6 +30,7 @@ def device_values(state: BodyState, *, lifted: bool) -> dict[str, float]:
     found[f"{_DEVICE}/Battery/Charge/Sensor/Value"] = state.battery
     for n, name in enumerate(JOINT_NAMES):
         found[f"{_DEVICE}/{name}/Temperature/Sensor/Value"] = state.temperature_max_c
+        found[f"{_DEVICE}/{name}/Temperature/Sensor/Status"] = 0.0
         found[f"{_DEVICE}/{name}/Position/Sensor/Value"] = float(state.angles_rad[n])
     return found
 

@@ -128,7 +128,7 @@ class Motion:
             return False
         while order == self._order and not self._robot.closing.wait(TICK_S):
             if not self._walk.status().moving:
-                return self._robot.has_contact
+                return order == self._order and self._robot.has_contact
         return False
 
     def move(self, x: float, y: float, theta: float, *config: object) -> None:
