@@ -11,6 +11,7 @@ from typing import cast
 from hal.errors import BackendError
 from hal.protocols import Robot
 from hal.simulation import Studio
+from hal.timing import LoopTiming
 from hal.types import CameraName, NaoVersion
 
 BACKENDS: dict[str, str] = {
@@ -28,6 +29,10 @@ PEERS: dict[str, str] = {
     "naoqi": "sim_backend.speak.naoqi:serve",
 }
 """Simulated robots that speak a real one's protocol, for any program to connect to."""
+
+TIMINGS: dict[str, str] = {
+    "lola": "sim_backend.speak.lola_timing:measure",
+}
 
 Ready = Callable[[dict[str, object]], None]
 """Told once, when a peer can be connected to, what it serves and where."""
@@ -50,7 +55,8 @@ class OpenOptions:
     the chest button only, "start": once it is connected) and `sit_after_s` without a client.
 
     The "naoqi" backend takes `url`, `user`, `password_file` ("": the environment's NAOQI_PASSWORD,
-    or no login) and `wake_up` (bool: whether a walk may wake up a robot that rests).
+    or no login), `wake_up` (bool: whether a walk may wake up a robot that rests) and
+    `velocity_by_leads` (bool, see `hal.naoqi.options`).
     """
 
     name: str = "nao"
@@ -91,6 +97,15 @@ def speak(
     BackendError or ScenarioError, each with one line.
     """
     _named(PEERS, protocol)(options, address, camera, stop, ready)
+
+
+def time_loop(backend: str, seconds: float, *, in_process: bool, real_time: bool) -> LoopTiming:
+    """Measure how soon a backend's own loop answers its robot, for so long.
+
+    `in_process`: in a thread of this process, else as the backend does it. Raises BackendError.
+    """
+    measure = _named(TIMINGS, backend)
+    return cast(LoopTiming, measure(seconds, in_process, real_time))
 
 
 def _named(table: Mapping[str, str], backend: str) -> Callable[..., object]:

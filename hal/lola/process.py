@@ -131,8 +131,12 @@ class Server:
 
     def _complain(self, why: str) -> None:
         if why != self._trouble:
-            say(why)
+            self._say(why)
         self._trouble = why
+
+    def _say(self, text: str) -> None:
+        if not self._told.quiet:
+            say(text)
 
     def _hang_up(self) -> None:
         if self._session is not None:
@@ -150,9 +154,9 @@ class Server:
             return False
         if self._leave_ns is None:
             self._leave_ns = now_ns
-            say("leaving: sitting down first")
+            self._say("leaving: sitting down first")
         if self._session is not None and self._session.done:
-            say("left: the last message was safe")
+            self._say("left: the last message was safe")
             return True
         # a LoLA that is not there cannot be told anything; a robot that cannot sit stays stiff
         nobody = self._link is None

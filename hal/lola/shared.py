@@ -160,10 +160,10 @@ class Shared:
             time.sleep(0)
         raise BackendError("the process of LoLA left its status half written")
 
-    def times(self, number: int) -> tuple[int, int] | None:
-        """When a measurement came and when it was answered, ns; None if it is gone."""
+    def answer(self, number: int) -> tuple[BodyState, int] | None:
+        """A measurement and when it was answered, ns; None if it is gone."""
         found = self._read(number)
-        return None if found is None else found[1:3]
+        return None if found is None else (_body_state(found[1], found[0]), found[2])
 
     def newest(self) -> BodyState | None:
         """The newest measurement; None before the first."""

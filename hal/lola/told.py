@@ -11,7 +11,8 @@ class Told(msgspec.Struct, frozen=True, kw_only=True):
     """`socket`: LoLA's. `sit_after_s`: a robot whose client has been gone for so long sits down.
 
     `stand_up`: "button" to hold the pose it is found in until the chest button is pressed, "start"
-    to stand up at once. `slots`: measurements kept. `real_time`: ask the kernel for it.
+    to stand up at once. `slots`: measurements kept. `real_time`: ask the kernel for it. `quiet`:
+    say nothing on standard error.
     """
 
     socket: str
@@ -19,3 +20,4 @@ class Told(msgspec.Struct, frozen=True, kw_only=True):
     stand_up: Literal["button", "start"] = "button"
     slots: int = 512
     real_time: bool = True
+    quiet: bool = False

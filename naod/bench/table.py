@@ -17,6 +17,7 @@ BENCHES: dict[str, str] = {
     "perception": "naod.bench.perception",
     "approach": "naod.bench.approach",
     "rooms": "naod.bench.rooms",
+    "lola": "naod.bench.lola",
 }
 
 QUICK = ("perception",)

@@ -57,7 +57,7 @@ class Robot:
         self.tick()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.lists(st.floats(0.0, 1.0), min_size=26, max_size=26), st.floats(0.0, 1.0))
 def test_first_targets_are_the_measured_pose_and_nothing_moves_by_itself(
     shares: list[float], stiffness: float

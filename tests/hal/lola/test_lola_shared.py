@@ -29,7 +29,9 @@ def test_nothing_before_the_first_and_the_newest_after() -> None:
     assert newest is not None
     assert newest.stamp_ns == 200
     assert (newest.angles_rad == 2.0).all()
-    assert shared.times(1) == (200, 203)
+    answered = shared.answer(1)
+    assert answered is not None
+    assert (answered[0].stamp_ns, answered[1]) == (200, 203)
     os.close(fd)
 
 
