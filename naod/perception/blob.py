@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.box import Box, breaks_of_labels, empty_box, measure_box
+from naod.perception.box import Box, Found, breaks_of_labels, empty_box, measure_box
 from naod.perception.components import components
 from naod.perception.runs import AREA, BOTTOM, LEFT, RIGHT, SUM_X, SUM_Y, TOP
 from naod.perception.segmenter import Segmentation
@@ -51,7 +51,7 @@ def find_blob(segmentation: Segmentation, pixels_min: int = PIXELS_MIN) -> Blob 
     if sight is not None and sight.pixels_min == pixels_min:
         if sight.pixels == 0:
             return None
-        return _blob(sight.box, sight.points, sight.cut, sight.pixels, segmentation.scale)
+        return _blob(sight.found, sight.points, sight.cut, sight.pixels, segmentation.scale)
     labels, table = components(segmentation.mask)
     if not len(table) or table[:, AREA].max() < pixels_min:
         return None
@@ -111,7 +111,7 @@ def blob_of(
     return _blob(box, points, cut, int(extent[AREA]), grain_px)
 
 
-def _blob(box: Box, points: int, cut: int, pixels: int, grain_px: float) -> Blob:
+def _blob(box: Box | Found, points: int, cut: int, pixels: int, grain_px: float) -> Blob:
     return Blob(
         centre_px=box.centre,
         area_px=pixels * grain_px**2,

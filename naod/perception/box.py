@@ -6,22 +6,22 @@ edge. In halves of a pixel all of them are whole numbers, so the hull is exact.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.memory import LINE, Memory, float64s, int32s, zeroed
+from naod.perception.rectangle import smallest_rectangle, upper_first
 from naod.perception.runs import AREA, BOTTOM, LEFT, RIGHT, SUM_X, SUM_Y, TOP, Runs
 
 LEFT_CUT, RIGHT_CUT, TOP_CUT, BOTTOM_CUT = 1, 2, 4, 8
+ALL_CUT = 15
 """Bits of the sides of the picture that cut an object."""
 
-ALL_CUT = 15
 _NOTHING = 1 << 30
 _POINTS_MIN = 3
-_SLACK = 1e-9
 
 
 class Box(NamedTuple):
@@ -36,17 +36,51 @@ class Box(NamedTuple):
     hull: NDArray[np.int32]  # (4 h + 4, 2), x and y in halves of a pixel
 
 
+class Found(NamedTuple):
+    """The part of a box that is the answer."""
+
+    corners: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    boundary: NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True)
+def found_in(memory: Memory, start: int, height: int, width: int) -> tuple[Found, int]:
+    """Room for an answer, and where memory is free again."""
+    most = 2 * height * width + 1
+    corners, at = float64s(memory, start, 8)
+    centre, at = float64s(memory, at, 2)
+    boundary, at = float64s(memory, at, 2 * most)
+    return Found(corners.reshape((4, 2)), centre, boundary.reshape((most, 2))), at
+
+
+def bytes_of_found(height: int, width: int) -> int:
+    """Memory that an answer takes."""
+    return 32 * height * width + 8 * LINE
+
+
+@njit(cache=True, nogil=True)
+def box_in(memory: Memory, start: int, found: Found, height: int, width: int) -> tuple[Box, int]:
+    """Scratch for an answer, and where memory is free again."""
+    breaks, at = int32s(memory, start, height * (width + 1) + 1)
+    first, at = int32s(memory, at, height + 3)
+    ends, at = int32s(memory, at, 4 * height + 2)
+    hull, at = int32s(memory, at, 8 * height + 8)
+    levels, corners = ends.reshape((2 * height + 1, 2)), hull.reshape((4 * height + 4, 2))
+    box = Box(found.corners, found.centre, found.boundary, breaks, first, levels, corners)
+    return box, at
+
+
+def bytes_of_box(height: int, width: int) -> int:
+    """Memory that scratch for an answer takes, at the most."""
+    return 4 * height * (width + 16) + 16 * LINE
+
+
 def empty_box(height: int, width: int) -> Box:
     """All the memory that masks of this size ever need."""
-    return Box(
-        corners=np.zeros((4, 2)),
-        centre=np.zeros(2),
-        boundary=np.empty((2 * height * width + 1, 2)),
-        breaks=np.zeros(height * (width + 1) + 1, dtype=np.int32),
-        first=np.zeros(height + 3, dtype=np.int32),
-        ends=np.zeros((2 * height + 1, 2), dtype=np.int32),
-        hull=np.zeros((4 * height + 4, 2), dtype=np.int32),
-    )
+    found = found_in(zeroed(bytes_of_found(height, width)), 0, height, width)[0]
+    box: Box = box_in(zeroed(bytes_of_box(height, width)), 0, found, height, width)[0]
+    return box
 
 
 @njit(cache=True, nogil=True)
@@ -146,12 +180,12 @@ def _trace(box: Box, top: int, bottom: int, height: int, width: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _turns(hull: NDArray[np.int32], count: int, x: int, y: int, side: int) -> bool:
+def _turns(hull: NDArray[np.int32], count: int, x: int, y: int) -> bool:
     """Whether the last point of a chain stays a corner when (x, y) follows."""
     ax, ay = hull[count - 2, 0], hull[count - 2, 1]
     bx, by = hull[count - 1, 0], hull[count - 1, 1]
     cross = np.int64(bx - ax) * (y - ay) - np.int64(by - ay) * (x - ax)
-    return side * cross > 0
+    return cross > 0
 
 
 @njit(cache=True, nogil=True)
@@ -166,61 +200,11 @@ def _hull(box: Box, top: int, bottom: int) -> int:
             if abs(x) == _NOTHING:
                 continue
             # going up the left side, or down the right one, a corner bends to the right
-            while count - base > 1 and not _turns(hull, count, x, level, 1):
+            while count - base > 1 and not _turns(hull, count, x, level):
                 count -= 1
             hull[count, 0], hull[count, 1] = x, level
             count += 1
     return count
-
-
-@njit(cache=True, nogil=True)
-def _extent_along(hull: NDArray[np.int32], count: int, ux: float, uy: float) -> tuple[float, float]:
-    low, high = math.inf, -math.inf
-    for k in range(count):
-        at = hull[k, 0] * ux + hull[k, 1] * uy
-        low, high = min(low, at), max(high, at)
-    return low, high
-
-
-@njit(cache=True, nogil=True)
-def _smallest(hull: NDArray[np.int32], count: int, corners: NDArray[np.float64]) -> None:
-    """Corners of the rectangle of least area, one of whose sides lies on the hull's."""
-    best = math.inf
-    for k in range(count):
-        other = k + 1 if k + 1 < count else 0
-        dx, dy = float(hull[other, 0] - hull[k, 0]), float(hull[other, 1] - hull[k, 1])
-        length = math.hypot(dx, dy)
-        if length == 0.0:
-            continue
-        ux, uy = dx / length, dy / length
-        left, right = _extent_along(hull, count, ux, uy)
-        low, high = _extent_along(hull, count, -uy, ux)
-        area = (right - left) * (high - low)
-        if area < best - _SLACK:
-            best = area
-            for corner in range(4):
-                along = left if corner in (0, 3) else right
-                across = low if corner < 2 else high
-                corners[corner, 0] = 0.5 * (along * ux - across * uy)
-                corners[corner, 1] = 0.5 * (along * uy + across * ux)
-
-
-@njit(cache=True, nogil=True)
-def _upper_first(corners: NDArray[np.float64]) -> None:
-    """Turn four corners, clockwise as seen, so that the first two are the upper edge."""
-    best, first = math.inf, 0
-    for k in range(4):
-        middle = corners[k, 1] + corners[(k + 1) % 4, 1]
-        # of two edges equally high, that which leans to the left
-        if middle < best - _SLACK or (
-            middle < best + _SLACK and corners[k, 0] < corners[first, 0] - _SLACK
-        ):
-            best, first = min(middle, best), k
-    for _ in range(first):
-        x, y = corners[0]
-        for k in range(3):
-            corners[k, 0], corners[k, 1] = corners[k + 1, 0], corners[k + 1, 1]
-        corners[3, 0], corners[3, 1] = x, y
 
 
 @njit(cache=True, nogil=True)
@@ -239,13 +223,20 @@ def _upright(extent: NDArray[np.int64], corners: NDArray[np.float64]) -> None:
 
 
 @njit(cache=True, nogil=True)
+def _to_full(points: NDArray[np.float64], grain_px: float) -> None:
+    """A mask pixel's centre is that of the block it stands for."""
+    for k in range(points.shape[0]):
+        points[k, 0] = (points[k, 0] + 0.5) * grain_px - 0.5
+        points[k, 1] = (points[k, 1] + 0.5) * grain_px - 0.5
+
+
+@njit(cache=True, nogil=True)
 def measure_box(
     box: Box, extent: NDArray[np.int64], height: int, width: int, grain_px: float
 ) -> tuple[int, int]:
     """Fill a box from its breaks and its line in the table of regions, in full pixels.
 
-    A mask pixel's centre is that of the block it stands for. Returns the number of boundary points
-    and the sides cut.
+    Returns the number of boundary points and the sides cut.
     """
     top, bottom = extent[TOP], extent[BOTTOM]
     points = _trace(box, top, bottom, height, width)
@@ -253,16 +244,13 @@ def measure_box(
     if points < _POINTS_MIN or cut == ALL_CUT:
         _upright(extent, box.corners)
     else:
-        levels = max(2 * top - 1, 1), min(2 * bottom + 1, 2 * height - 3)
-        first, last = min(levels[0], 2 * top), max(levels[1], 2 * bottom)
-        _smallest(box.hull, _hull(box, first, last), box.corners)
-        _upper_first(box.corners)
+        first = 2 * top - 1 if top > 0 else 0
+        last = 2 * bottom + 1 if bottom < height - 1 else 2 * bottom
+        smallest_rectangle(box.hull, _hull(box, first, last), box.corners)
+        upper_first(box.corners)
     box.centre[0] = extent[SUM_X] / extent[AREA]
     box.centre[1] = extent[SUM_Y] / extent[AREA]
-    for points_px in (box.corners, box.boundary[:points]):
-        for k in range(points_px.shape[0]):
-            points_px[k, 0] = (points_px[k, 0] + 0.5) * grain_px - 0.5
-            points_px[k, 1] = (points_px[k, 1] + 0.5) * grain_px - 0.5
-    box.centre[0] = (box.centre[0] + 0.5) * grain_px - 0.5
-    box.centre[1] = (box.centre[1] + 0.5) * grain_px - 0.5
+    _to_full(box.corners, grain_px)
+    _to_full(box.boundary[:points], grain_px)
+    _to_full(box.centre.reshape((1, 2)), grain_px)
     return points, cut

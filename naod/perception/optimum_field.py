@@ -8,6 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.memory import LINE, Memory, int32s, int64s, uint8s, uint32s, zeroed
+
 BACKGROUND, BORDER, OPEN, OBJECT = 0x00, 0x11, 0x20, 0x22
 """Codes of cells. The lower digit is 0, 1 or 2 for background, beyond the border and object while
 an open cell is taken for background, the upper one the same while it is taken for object: four
@@ -21,8 +23,8 @@ digits of four neighbours come to 0 to 8."""
 CELLS_A_WORD = 8
 
 CANDIDATES, UNDECIDED, WAVES, VISITS, LIFTS = range(5)
-"""Counts of a solve: pixels open after all rows were asked; pixels the bounds left open; waves of the
-cut; cells that waves came by, each wave anew; single cells lifted between waves."""
+"""Counts of a solve: pixels open once all rows were asked; pixels the bounds left open; waves of
+the cut; cells that waves came by, each wave anew; single cells lifted between waves."""
 
 # Cells are unsigned throughout: an index that may be negative costs a test at every access.
 _ZERO, _ONE = np.uint64(0), np.uint64(1)
@@ -52,30 +54,65 @@ class Field(NamedTuple):
     counts: NDArray[np.int64]  # (5,), see CANDIDATES
 
 
-def empty_field(height: int, width: int) -> Field:
-    """All the memory that fields of this size ever need."""
+@njit(cache=True, nogil=True)
+def field_in(memory: Memory, start: int, height: int, width: int) -> tuple[Field, int]:
+    """A field cut from memory, and where that is free again."""
     pitch = -(-(width + 1) // CELLS_A_WORD) * CELLS_A_WORD
-    rows = np.full((height + 2, pitch), BORDER, dtype=np.uint8)
-    cells = rows.size
+    cells = (height + 2) * pitch
     # one more than there are pixels, so that a list may be written first and lengthened if it holds
     room = height * width + 1
-    return Field(
-        codes=rows.reshape(-1),
-        rows=rows,
-        words=rows.view(np.uint64),
-        hot=np.zeros(height + 2, dtype=np.uint8),
-        needs=np.full((height + 2, pitch), NOWHERE, dtype=np.uint8),
-        asked=np.full(cells, BORDER, dtype=np.uint8),
-        differences=np.zeros(cells, dtype=np.int32),
-        candidates=np.zeros(room, dtype=np.uint32),
-        pending=np.zeros(room, dtype=np.uint32),
-        excess=np.zeros(cells, dtype=np.int32),
-        residual=np.zeros((cells, 4), dtype=np.int32),
-        level=np.zeros(cells, dtype=np.int32),
-        nodes=np.zeros(room, dtype=np.uint32),
-        queue=np.zeros(room, dtype=np.uint32),
-        counts=np.zeros(5, dtype=np.int64),
+    codes, at = uint8s(memory, start, cells)
+    needs, at = uint8s(memory, at, cells)
+    asked, at = uint8s(memory, at, cells)
+    hot, at = uint8s(memory, at, height + 2)
+    counts, at = int64s(memory, at, 5)
+    differences, at = int32s(memory, at, cells)
+    level, at = int32s(memory, at, cells)
+    excess, at = int32s(memory, at, cells)
+    residual, at = int32s(memory, at, 4 * cells)
+    candidates, at = uint32s(memory, at, room)
+    pending, at = uint32s(memory, at, room)
+    nodes, at = uint32s(memory, at, room)
+    queue, at = uint32s(memory, at, room)
+    rows = codes.reshape((height + 2, pitch))
+    words = codes.view(np.uint64).reshape((height + 2, pitch // CELLS_A_WORD))
+    field = Field(
+        codes,
+        rows,
+        words,
+        hot,
+        needs.reshape((height + 2, pitch)),
+        asked,
+        differences,
+        candidates,
+        pending,
+        excess,
+        residual.reshape((cells, 4)),
+        level,
+        nodes,
+        queue,
+        counts,
     )
+    return field, at
+
+
+def bytes_of_field(height: int, width: int) -> int:
+    """Memory that a field takes, at the most."""
+    cells = (height + 2) * (width + CELLS_A_WORD)
+    return 51 * cells + 16 * LINE
+
+
+def clear(field: Field) -> None:
+    """Put the border up in fresh memory."""
+    field.codes[:] = field.asked[:] = BORDER
+    field.needs[:] = NOWHERE
+
+
+def empty_field(height: int, width: int) -> Field:
+    """All the memory that fields of this size ever need."""
+    field: Field = field_in(zeroed(bytes_of_field(height, width)), 0, height, width)[0]
+    clear(field)
+    return field
 
 
 @njit(cache=True, nogil=True)

@@ -12,6 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.memory import LINE, Memory, uint64s
+
 Y_BITS, C_BITS = 5, 6
 CELLS = 1 << (Y_BITS + 2 * C_BITS)
 
@@ -33,6 +35,23 @@ class Picture(NamedTuple):
     raw: NDArray[np.uint8]
     words: NDArray[np.uint64]
     sums: NDArray[np.uint64]  # (2, 2 W): of each byte, or the even and odd lanes of each word
+
+
+@njit(cache=True, nogil=True)
+def picture_in(
+    memory: Memory, start: int, raw: NDArray[np.uint8], kind: int
+) -> tuple[Picture, int]:
+    """A picture with scratch cut from memory, and where that is free again."""
+    height, across = raw.shape
+    words = raw.reshape(-1)[: 0 if kind == ANY_BLOCK else raw.size].view(np.uint64)
+    shape = (0, 0) if kind == ANY_BLOCK else (height, across // 8)
+    sums, at = uint64s(memory, start, 2 * across)
+    return Picture(raw, words.reshape(shape), sums.reshape((2, across))), at
+
+
+def bytes_of_picture(width: int) -> int:
+    """Memory that a picture's scratch takes."""
+    return 32 * width + 2 * LINE
 
 
 @njit(cache=True, nogil=True)

@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.memory import LINE, Memory, int32s, int64s, zeroed
 from naod.perception.optimum_field import OBJECT
 
 AREA, LEFT, RIGHT, TOP, BOTTOM, SUM_X, SUM_Y, EVIDENCE = range(8)
@@ -35,12 +36,28 @@ class Runs(NamedTuple):
     table: NDArray[np.int64]  # (regions at most + 1, 8)
 
 
+@njit(cache=True, nogil=True)
+def runs_in(memory: Memory, start: int, height: int, width: int) -> tuple[Runs, int]:
+    """Room for the runs of any mask of this size, and where memory is free again."""
+    most = height * ((width + 1) // 2) + 1
+    regions = ((height + 1) // 2) * ((width + 1) // 2) + 1
+    rows, at = int32s(memory, start, most)
+    starts, at = int32s(memory, at, most)
+    ends, at = int32s(memory, at, most)
+    names, at = int32s(memory, at, most)
+    table, at = int64s(memory, at, 8 * regions)
+    return Runs(rows, starts, ends, names, table.reshape((regions, 8))), at
+
+
+def bytes_of_runs(height: int, width: int) -> int:
+    """Memory that runs take, at the most."""
+    return 24 * (height + 1) * (width + 1) + 16 * LINE
+
+
 def empty_runs(height: int, width: int) -> Runs:
     """All the memory that masks of this size ever need."""
-    runs = height * ((width + 1) // 2) + 1
-    regions = ((height + 1) // 2) * ((width + 1) // 2) + 1
-    ints = np.zeros((4, runs), dtype=np.int32)
-    return Runs(ints[0], ints[1], ints[2], ints[3], np.zeros((regions, 8), dtype=np.int64))
+    runs: Runs = runs_in(zeroed(bytes_of_runs(height, width)), 0, height, width)[0]
+    return runs
 
 
 @njit(cache=True, nogil=True)

@@ -12,18 +12,9 @@ from naod.perception.colour_model import ColourModel
 from naod.perception.energy import STEPS, Singletons
 from naod.perception.icm import descend, label_by_singletons
 from naod.perception.lookup import Lookup
-from naod.perception.optimum_field import WAVES, empty_field
-from naod.perception.quantising import ANY_BLOCK, Picture, kind_of
+from naod.perception.quantising import kind_of
 from naod.perception.reduction import Reduction
-from naod.perception.runs import empty_runs
-from naod.perception.sight import (
-    Layout,
-    Sight,
-    Sights,
-    choose_in_mask,
-    measure_pixels,
-    see,
-)
+from naod.perception.sight import Sight, Sights, choose_in_mask, measure, scratch, see
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +56,8 @@ class Segmenter:
         self._lookup = Lookup(self.singletons, self.beta_steps)
         height, width = self.reduction.height, self.reduction.width
         self._energies = np.zeros(settings.sweeps_max + 1, dtype=np.int64)
-        self._layout = Layout(kind_of(size, self.reduction.block), self.reduction.block)
-        self._sums = np.zeros((2, 2 * size[0]), dtype=np.uint64)
-        self._no_words = np.zeros((0, 0), dtype=np.uint64)
-        self._no_words.flags.writeable = False
-        self._cells = np.zeros(width, dtype=np.uint32)
-        self._field = empty_field(height, width)
-        self._runs = empty_runs(height, width)
+        self._kind = kind_of(size, self.reduction.block)
+        self._memory = scratch(height, width, size[0])
         self._sights = Sights(height, width, settings.pixels_min)
 
     @property
@@ -96,10 +82,10 @@ class Segmenter:
         No array is made as long as what came of earlier pictures has been dropped, all but the
         last; see `Sights`.
         """
-        picture = self._picture(yuyv)
+        raw = self._raw(yuyv)
         sight = self._sights.take()
         exact = self.settings.optimiser == "exact"
-        energy, iterations, settled = (self._minimise if exact else self._descend)(picture, sight)
+        energy, iterations, settled = (self._minimise if exact else self._descend)(raw, sight)
         return Segmentation(
             mask=sight.mask,
             energy=sight.mask.size * self.settings.background_energy + energy / STEPS,
@@ -111,53 +97,39 @@ class Segmenter:
             sight=sight,
         )
 
-    def _picture(self, yuyv: NDArray[np.uint8]) -> Picture:
+    def _raw(self, yuyv: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width, height = self.reduction.size
         if yuyv.shape != (height, width, 2) or yuyv.dtype != np.uint8:
             raise ValueError(f"expected a uint8 YUYV picture {width}x{height}, got {yuyv.shape}")
         raw: NDArray[np.uint8] = np.ascontiguousarray(yuyv).reshape(height, 2 * width)
-        if self._layout.kind == ANY_BLOCK:
-            words: NDArray[np.uint64] = self._no_words
-        else:
-            words = raw.view(np.uint64)
-            if not words.flags.aligned:
-                raw = raw.copy()
-                words = raw.view(np.uint64)
-            words.flags.writeable = False
         # whether a picture may be written to is part of its type: one type, one compilation
         raw.flags.writeable = False
-        return Picture(raw, words, self._sums)
+        return raw
 
-    def _minimise(self, picture: Picture, sight: Sight) -> tuple[int, int, bool]:
-        energy, (sight.pixels, sight.points, sight.cut) = see(
-            picture,
-            self._layout,
+    def _minimise(self, raw: NDArray[np.uint8], sight: Sight) -> tuple[int, int, bool]:
+        reduction = self.reduction
+        energy, waves, sight.pixels, sight.points, sight.cut = see(
+            raw,
+            self._kind,
+            reduction.block,
             self._lookup.entries,
-            self._cells,
-            self._field,
+            self._memory,
+            sight.memory,
+            reduction.height,
+            reduction.width,
             self.beta_steps,
-            sight.differences,
-            sight.mask,
-            self._runs,
-            sight.box,
             sight.pixels_min,
         )
-        return energy, int(self._field.counts[WAVES]), True
+        return energy, waves, True
 
-    def _descend(self, picture: Picture, sight: Sight) -> tuple[int, int, bool]:
-        differences, mask, field_ = sight.differences, sight.mask, self._field
-        entries = self._lookup.entries
-        measure_pixels(picture, self._layout, entries, self._cells, field_, differences)
+    def _descend(self, raw: NDArray[np.uint8], sight: Sight) -> tuple[int, int, bool]:
+        block, (height, width) = self.reduction.block, sight.mask.shape
+        differences, mask, entries = sight.differences, sight.mask, self._lookup.entries
+        measure(raw, self._kind, block, entries, self._memory, sight.memory, height, width)
         label_by_singletons(differences, mask)
         sweeps = descend(differences, mask, self.beta_steps, self.settled_steps, self._energies)
         sight.pixels, sight.points, sight.cut = choose_in_mask(
-            mask,
-            field_,
-            differences,
-            self._runs,
-            sight.box,
-            sight.pixels_min,
-            float(self.reduction.block),
+            self._memory, sight.memory, height, width, sight.pixels_min, float(block)
         )
         last = int(self._energies[sweeps] - self._energies[sweeps - 1])
         return int(self._energies[sweeps]), sweeps, -last < self.settled_steps

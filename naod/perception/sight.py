@@ -3,44 +3,66 @@
 from __future__ import annotations
 
 import sys
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.box import Box, breaks_of_region, empty_box, measure_box
+from naod.perception.box import (
+    Box,
+    Found,
+    box_in,
+    breaks_of_region,
+    bytes_of_box,
+    bytes_of_found,
+    found_in,
+    measure_box,
+)
 from naod.perception.components import pad
 from naod.perception.lookup import NEED_BITS, NEED_MASK
+from naod.perception.memory import LINE, Memory, int32s, uint8s, uint32s, zeroed
 from naod.perception.optimum import solve
-from naod.perception.optimum_field import Field
-from naod.perception.quantising import Picture, cells_of_row
-from naod.perception.runs import AREA, EVIDENCE, Runs, find_runs
+from naod.perception.optimum_field import WAVES, Field, bytes_of_field, clear, field_in
+from naod.perception.quantising import (
+    Picture,
+    bytes_of_picture,
+    cells_of_row,
+    picture_in,
+)
+from naod.perception.runs import AREA, EVIDENCE, Runs, bytes_of_runs, find_runs, runs_in
+
+
+@njit(cache=True, nogil=True)
+def _result_in(
+    memory: Memory, height: int, width: int
+) -> tuple[NDArray[np.uint8], NDArray[np.int32], Found]:
+    """Labels (h, w), differences (h, w) and box."""
+    mask, at = uint8s(memory, 0, height * width)
+    differences, at = int32s(memory, at, height * width)
+    found, at = found_in(memory, at, height, width)
+    return mask.reshape((height, width)), differences.reshape((height, width)), found
 
 
 class Sight:
     """What is made of one picture: the memory that a Segmentation and its Blob lie in.
 
-    `mask` (h, w) uint8, `differences` (h, w) int32, `box`: of the object among the regions that
-    have `pixels_min`; `pixels` it has, 0 if there is none, `points` of its boundary, and the sides
-    of the picture that cut it.
+    `mask` (h, w) uint8, `differences` (h, w) int32, `found`: box of the object among the regions
+    that have `pixels_min`; `pixels` it has, 0 if there is none, `points` of its boundary, and the
+    sides of the picture that cut it.
     """
 
-    def __init__(self, height: int, width: int, pixels_min: int, scratch: Box) -> None:
-        self.mask = np.zeros((height, width), dtype=np.uint8)
-        self.differences = np.zeros((height, width), dtype=np.int32)
-        fresh = empty_box(1, 1)
-        boundary = np.empty_like(scratch.boundary)
-        self.box = scratch._replace(corners=fresh.corners, centre=fresh.centre, boundary=boundary)
+    def __init__(self, height: int, width: int, pixels_min: int) -> None:
+        self.memory = zeroed(5 * height * width + bytes_of_found(height, width) + 2 * LINE)
+        self.mask, self.differences, self.found = _result_in(self.memory, height, width)
         self.pixels_min = pixels_min
         self.pixels = self.points = self.cut = 0
 
     def holders(self) -> int:
         """References to this memory, its own included."""
-        box = self.box
+        found = self.found
         count = sys.getrefcount(self) + sys.getrefcount(self.mask)
-        count += sys.getrefcount(self.differences) + sys.getrefcount(box.corners)
-        return count + sys.getrefcount(box.centre) + sys.getrefcount(box.boundary)
+        count += sys.getrefcount(self.differences) + sys.getrefcount(found.corners)
+        return count + sys.getrefcount(found.centre) + sys.getrefcount(found.boundary)
 
 
 class Sights:
@@ -53,7 +75,6 @@ class Sights:
     def __init__(self, height: int, width: int, pixels_min: int) -> None:
         self._shape = (height, width)
         self._pixels_min = pixels_min
-        self._scratch = empty_box(height, width)
         self._all = [self._fresh(), self._fresh()]
         # how many a sight has that nobody holds, counted as `take` counts
         self._unheld = next(sight.holders() for sight in self._all)
@@ -71,40 +92,55 @@ class Sights:
         return self._all[-1]
 
     def _fresh(self) -> Sight:
-        return Sight(*self._shape, self._pixels_min, self._scratch)
-
-
-class Layout(NamedTuple):
-    """How pictures are cut into blocks: see `quantising`."""
-
-    kind: int
-    block: int
+        return Sight(*self._shape, self._pixels_min)
 
 
 @njit(cache=True, nogil=True)
-def measure_pixels(
+def _scratch_in(
+    memory: Memory, found: Found, height: int, width: int
+) -> tuple[Field, Runs, Box, NDArray[np.uint32], int]:
+    field, at = field_in(memory, 0, height, width)
+    runs, at = runs_in(memory, at, height, width)
+    box, at = box_in(memory, at, found, height, width)
+    places, at = uint32s(memory, at, height * width)
+    return field, runs, box, places.reshape((height, width)), at
+
+
+def scratch(height: int, width: int, picture_width: int) -> Memory:
+    """Memory that pictures of one size are worked on in."""
+    size = bytes_of_field(height, width) + bytes_of_runs(height, width)
+    size += bytes_of_box(height, width) + bytes_of_picture(picture_width)
+    memory = zeroed(size + 4 * height * width + LINE)
+    clear(field_in(memory, 0, height, width)[0])
+    return memory
+
+
+@njit(cache=True, nogil=True)
+def _measure_pixels(
     picture: Picture,
-    layout: Layout,
+    kind: int,
+    block: int,
     entries: NDArray[np.int32],
-    cells: NDArray[np.uint32],
+    places: NDArray[np.uint32],
     field: Field,
     differences: NDArray[np.int32],
 ) -> None:
     """Differences (h, w) of all blocks, and the needs of a field's cells."""
-    width = differences.shape[1]
-    for i in range(differences.shape[0]):
-        cells_of_row(picture, layout.kind, layout.block, i, cells)
-        line, needs = differences[i], field.needs[i + 1]
-        for j in range(width):
-            line[j] = entries[cells[j]]
-        for j in range(width):
+    # the whole picture first: looking up in between would keep memory waiting
+    for i in range(places.shape[0]):
+        cells_of_row(picture, kind, block, i, places[i])
+    for i in range(places.shape[0]):
+        line, needs, here = differences[i], field.needs[i + 1], places[i]
+        for j in range(line.size):
+            line[j] = entries[here[j]]
+        for j in range(line.size):
             needs[j] = np.uint8(line[j] & NEED_MASK)
-        for j in range(width):
+        for j in range(line.size):
             line[j] >>= NEED_BITS
 
 
 @njit(cache=True, nogil=True)
-def choose(
+def _choose(
     field: Field,
     differences: NDArray[np.int32],
     runs: Runs,
@@ -132,36 +168,57 @@ def choose(
 
 
 @njit(cache=True, nogil=True)
+def measure(
+    raw: NDArray[np.uint8],
+    kind: int,
+    block: int,
+    entries: NDArray[np.int32],
+    memory: Memory,
+    result: Memory,
+    height: int,
+    width: int,
+) -> None:
+    """Differences of a picture's blocks."""
+    _, differences, found = _result_in(result, height, width)
+    field, _, _, places, at = _scratch_in(memory, found, height, width)
+    picture = picture_in(memory, at, raw, kind)[0]
+    _measure_pixels(picture, kind, block, entries, places, field, differences)
+
+
+@njit(cache=True, nogil=True)
 def choose_in_mask(
-    mask: NDArray[np.uint8],
-    field: Field,
-    differences: NDArray[np.int32],
-    runs: Runs,
-    box: Box,
-    pixels_min: int,
-    grain_px: float,
+    memory: Memory, result: Memory, height: int, width: int, pixels_min: int, grain_px: float
 ) -> tuple[int, int, int]:
-    """As `choose`, of labels that another optimiser wrote."""
+    """As `see`, of labels that another optimiser wrote."""
+    mask, differences, found = _result_in(result, height, width)
+    field, runs, box, _, _ = _scratch_in(memory, found, height, width)
     pad(mask, field.rows, field.hot)
-    return choose(field, differences, runs, box, pixels_min, grain_px)
+    return _choose(field, differences, runs, box, pixels_min, grain_px)
 
 
 @njit(cache=True, nogil=True)
 def see(
-    picture: Picture,
-    layout: Layout,
+    raw: NDArray[np.uint8],
+    kind: int,
+    block: int,
     entries: NDArray[np.int32],
-    cells: NDArray[np.uint32],
-    field: Field,
+    memory: Memory,
+    result: Memory,
+    height: int,
+    width: int,
     beta: int,
-    differences: NDArray[np.int32],
-    mask: NDArray[np.uint8],
-    runs: Runs,
-    box: Box,
     pixels_min: int,
-) -> tuple[int, tuple[int, int, int]]:
-    """Everything, with the exact optimum; its energy, and what `choose` returns."""
-    measure_pixels(picture, layout, entries, cells, field, differences)
+) -> tuple[int, int, int, int, int]:
+    """All of it: differences, the exact optimum, the object's box.
+
+    `raw`: the picture's bytes (H, 2 W). `kind`, `block`: how it is reduced to (height, width).
+    `memory`: of `scratch`. `result`: a Sight's. Returns the energy, waves of the cut, pixels,
+    boundary points and cut sides of the object; no pixels: no region has `pixels_min`.
+    """
+    mask, differences, found = _result_in(result, height, width)
+    field, runs, box, places, at = _scratch_in(memory, found, height, width)
+    picture = picture_in(memory, at, raw, kind)[0]
+    _measure_pixels(picture, kind, block, entries, places, field, differences)
     energy = solve(field, differences, beta, mask)
-    grain_px = float(layout.block)
-    return energy, choose(field, differences, runs, box, pixels_min, grain_px)
+    pixels, points, cut = _choose(field, differences, runs, box, pixels_min, float(block))
+    return energy, field.counts[WAVES], pixels, points, cut
