@@ -14,6 +14,7 @@ from naod.loop.approach import approach
 from naod.loop.equipment import Equipment, Sighting
 from naod.loop.expectation import expected
 from naod.loop.learning import gather, show_goal
+from naod.loop.light import colour_now, follow_light
 from naod.loop.looking import gaze, stand
 from naod.loop.outbox import Outbox
 from naod.loop.report import state_message, with_error
@@ -37,7 +38,8 @@ def look_at(equipment: Equipment, state: LoopState, seen: Observation) -> Sighti
         return None
     motion = equipment.motion(seen.around, seen.walk)
     prior = _expectation(equipment, state, seen, seen.frame.stamp_ns, motion)
-    return equipment.sight(state.model, seen.frame, seen.body, prior, motion)
+    colour = colour_now(state) or state.model
+    return equipment.sight(colour, seen.frame, seen.body, prior, motion)
 
 
 def _expectation(
@@ -69,6 +71,7 @@ def decide(
     state = stand(state, seen.walk, now_ns)
     if seen.frame is not None:
         state = gather(replace(state, frame_ns=seen.frame.stamp_ns), seen.frame, out)
+    state = follow_light(state, sighting, seen.frame, out)
     if state.mode != "idle" and state.model is not None:
         state = gaze(equipment, state, sighting, seen, out)
         state = with_error(state)

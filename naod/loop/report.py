@@ -60,4 +60,6 @@ def _faults(state: LoopState, seen: Observation, now_ns: int) -> tuple[str, ...]
         faults.append("no_picture")
     if seen.walk.fallen:
         faults.append("fallen")
+    if state.drift is not None and state.drift.doubtful:
+        faults.append("colour_doubtful")
     return tuple(faults)

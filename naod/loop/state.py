@@ -13,6 +13,7 @@ from naod.localisation.looks import Look
 from naod.loop.expectation import Anchor
 from naod.loop.types import Label
 from naod.perception.colour_model import ColourModel
+from naod.perception.drift import Drift
 
 Mode = Literal["idle", "track", "approach"]
 Phase = Literal[
@@ -76,12 +77,14 @@ class Target:
 class LoopState:
     """The loop's memory. `looks` are those taken from the present stance, object centred.
 
+    `drift`: how the light stands to that in which `model` was learnt.
     `waiting_from_ns`: since when an approach has stood there waiting for looks.
     """
 
     mode: Mode = "idle"
     phase: Phase = "idle"
     model: ColourModel | None = None
+    drift: Drift | None = None
     goals: Mapping[str, Goal] = field(default_factory=lambda: MappingProxyType({}))
     goal: str | None = None
     learning: Learning | None = None

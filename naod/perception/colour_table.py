@@ -25,9 +25,9 @@ STEPS_MAX = 32767
 Cells = NDArray[np.int16]
 
 
-def packed(table: Cells) -> str:
+def packed(table: Cells, level: int = 6) -> str:
     """The text in MODEL.toml: little-endian int16, Y slowest and V fastest, zlib, base64."""
-    return base64.b64encode(zlib.compress(table.astype("<i2").tobytes(), 6)).decode()
+    return base64.b64encode(zlib.compress(table.astype("<i2").tobytes(), level)).decode()
 
 
 def unpacked(text: str) -> Cells:
