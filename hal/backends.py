@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import cast
 
 from hal.errors import BackendError
+from hal.health import Finding
 from hal.protocols import Robot
 from hal.simulation import Studio
 from hal.timing import LoopTiming
@@ -32,6 +33,12 @@ PEERS: dict[str, str] = {
 
 TIMINGS: dict[str, str] = {
     "lola": "sim_backend.speak.lola_timing:measure",
+}
+
+EXAMINERS: dict[str, str] = {
+    "sim": "sim_backend.visit:examine",
+    "lola": "hal.lola.visit:examine",
+    "naoqi": "hal.naoqi.visit:examine",
 }
 
 Ready = Callable[[dict[str, object]], None]
@@ -79,6 +86,15 @@ def open_studio(backend: str, options: OpenOptions) -> Studio:
     It is told what a robot's backend is told. Raises BackendError or ScenarioError.
     """
     return cast(Studio, _named(STUDIOS, backend)(options))
+
+
+def examine(backend: str, options: OpenOptions) -> list[Finding]:
+    """Look at a robot without taking it over: it is not moved, and nothing is left changed.
+
+    For when nobody has it open; a robot that is open can be `hal.health.Examined` by itself. What
+    is wrong with the robot is a finding. Raises BackendError for a wrong name or options.
+    """
+    return cast(list[Finding], _named(EXAMINERS, backend)(options))
 
 
 def speak(

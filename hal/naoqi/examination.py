@@ -31,11 +31,16 @@ def findings(
     session: Session, body: Body, walk: NaoqiWalk, camera: NaoqiCamera, guard: Guard
 ) -> list[Finding]:
     """Everything in turn; never raises for what the robot answers."""
+    return [*looked_at(session, body, camera), _stance(walk, body), _watchdog(guard)]
+
+
+def looked_at(session: Session, body: Body, camera: NaoqiCamera) -> list[Finding]:
+    """What can be told without the right to move: services, joints, clock, camera."""
     try:
         asked = [_services(session), _joints(session, body)]
     except HalError as error:
         asked = [Finding("naoqi", "fail", str(error), "does NAOqi run, and is the network well?")]
-    return [*asked, _stance(walk, body), _watchdog(guard), _clock(body, camera), *_camera(camera)]
+    return [*asked, _clock(body, camera), *_camera(camera)]
 
 
 def _services(session: Session) -> Finding:
@@ -71,7 +76,7 @@ def _stance(walk: NaoqiWalk, body: Body) -> Finding:
     against = objection(body.sensed)
     if against is not None:
         return Finding("walk", "warn", against, "put it on its feet")
-    rising = needs_rising(walk.readiness)
+    rising = needs_rising(walk.stance.readiness)
     if rising is not None:
         return Finding("walk", "warn", rising, "a walk asked for makes it stand up, if allowed to")
     if walk.refusal is not None:

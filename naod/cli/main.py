@@ -21,6 +21,7 @@ COMMANDS: dict[str, str] = {
     "robot": "the simulated robot as a peer that speaks LoLA or NAOqi",
     "run": "the daemon",
     "ctl": "remote control of a running daemon",
+    "doctor": "what is well with the robot and this machine, what is not, and what to do",
     "calibrate": "one head's camera correction and intrinsics from a printed rectangle",
     "bench": "benchmarks, with peers in the same run",
 }

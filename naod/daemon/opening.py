@@ -19,6 +19,11 @@ def open_configured(config: DaemonConfig, beside: Path, real_time: bool = True) 
 
     `real_time`: a simulated robot otherwise goes by a clock that moves when somebody waits.
     """
+    return open_robot(config.robot.backend, options_of(config, beside, real_time))
+
+
+def options_of(config: DaemonConfig, beside: Path, real_time: bool = True) -> OpenOptions:
+    """What the configured backend is told. Raises InputError."""
     if config.camera.device and config.robot.backend != "lola":
         raise InputError(
             f"camera.device: backend {config.robot.backend!r} has a camera of its own; "
@@ -43,7 +48,7 @@ def open_configured(config: DaemonConfig, beside: Path, real_time: bool = True) 
             "device": _device(config.camera.device, beside),
             "controls": config.camera.controls,
         }
-    options = OpenOptions(
+    return OpenOptions(
         name=config.robot.name,
         version=config.robot.version,
         camera=config.camera.which,
@@ -52,7 +57,6 @@ def open_configured(config: DaemonConfig, beside: Path, real_time: bool = True) 
         fps=config.camera.fps,
         section=section,
     )
-    return open_robot(config.robot.backend, options)
 
 
 def shape_for(config: DaemonConfig, robot: Robot) -> ObjectShape:

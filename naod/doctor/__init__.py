@@ -1,0 +1,1 @@
+"""What `naod doctor` looks at: one room for each thing that can be wrong."""
