@@ -71,7 +71,7 @@ class NaoqiHead:
 
     def _stiffen(self) -> None:
         """See to it that the motors are on; a jump of the torque would jerk the head."""
-        stiffness = self._walk.readiness.head_stiffness
+        stiffness = self._walk.stance.readiness.head_stiffness
         limp = stiffness is not None and stiffness < LIMP
         if not limp or (self._stiffening is not None and not self._stiffening.done):
             return
@@ -82,6 +82,6 @@ class NaoqiHead:
 
     def relax(self) -> None:
         """Let go of a head that was limp before us. Raises HalError."""
-        if self._was_limp and self._walk.readiness.awake is False:
+        if self._was_limp and self._walk.stance.readiness.awake is False:
             self._channel.session.call("ALMotion", "setStiffnesses", "Head", 0.0)
         self._was_limp = False

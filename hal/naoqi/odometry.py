@@ -34,17 +34,18 @@ class Odometry:
         now = (x, y, yaw)
         if self._first is None:
             self._first = now
-        moved = _composed(self._base, _between(self._first, now))
+        moved = composed(self._base, seen_from(self._first, now))
         self.pose = PlanarMotion(moved[0], moved[1], math.remainder(moved[2], 2.0 * math.pi))
 
 
-def _between(a: Pose, b: Pose) -> Pose:
+def seen_from(a: Pose, b: Pose) -> Pose:
     """b seen from a."""
     c, s = math.cos(a[2]), math.sin(a[2])
     dx, dy = b[0] - a[0], b[1] - a[1]
     return (c * dx + s * dy, -s * dx + c * dy, b[2] - a[2])
 
 
-def _composed(a: Pose, b: Pose) -> Pose:
+def composed(a: Pose, b: Pose) -> Pose:
+    """b, given as seen from a, in the frame of a."""
     c, s = math.cos(a[2]), math.sin(a[2])
     return (a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from urllib.parse import urlsplit
 
 from hal.backends import OpenOptions
 from hal.errors import BackendError
@@ -15,6 +16,7 @@ _KNOWN: dict[str, type] = {
     "user": str,
     "password_file": str,
     "wake_up": bool,
+    "velocity_by_leads": bool,
     "controls": dict,
 }
 
@@ -23,12 +25,15 @@ _KNOWN: dict[str, type] = {
 class NaoqiOptions:
     """Where and as whom to connect; whether a walk may wake the robot up.
 
+    `velocity_by_leads`: a velocity is walked as displacements that end by themselves (`lead`); so
+    it is, unless told, where a network lies between, as the watchdog cannot reach over a cut one.
     `controls`: values of the camera's controls to hold, by the names of `controls.GIVEN`.
     """
 
     url: str
     login: Login | None
     wake_up: bool
+    velocity_by_leads: bool
     controls: Mapping[str, int]
 
 
@@ -47,8 +52,18 @@ def checked(options: OpenOptions) -> NaoqiOptions:
     if url.startswith("tcps://") and login is None:
         raise BackendError("NAOqi over tcps needs a password; see password_file")
     return NaoqiOptions(
-        url, login, bool(section.get("wake_up", True)), _controls(section.get("controls", {}))
+        url,
+        login,
+        wake_up=bool(section.get("wake_up", True)),
+        velocity_by_leads=bool(section.get("velocity_by_leads", not _is_here(url))),
+        controls=_controls(section.get("controls", {})),
     )
+
+
+def _is_here(url: str) -> bool:
+    """Whether NAOqi runs on this machine: the daemon is on the robot."""
+    host = urlsplit(url).hostname or ""
+    return host in ("localhost", "::1") or host.startswith("127.")
 
 
 def _controls(told: object) -> dict[str, int]:

@@ -17,6 +17,7 @@ from hal.naoqi.guard import Guard
 from hal.naoqi.head import NaoqiHead
 from hal.naoqi.life import Household
 from hal.naoqi.options import NaoqiOptions, checked
+from hal.naoqi.stance import Stance
 from hal.naoqi.walk import NaoqiWalk
 from hal.types import RobotInfo
 
@@ -49,9 +50,8 @@ class NaoqiRobot:
         self._body = Body(channel("body"), options.name)
         walking = channel("walk")
         household = Household(options.name)
-        self._walk = NaoqiWalk(
-            walking, self._guard, household, lambda: self._body.sensed, told.wake_up
-        )
+        stance = Stance(lambda: self._body.sensed, told.wake_up)
+        self._walk = NaoqiWalk(walking, self._guard, household, stance, told.velocity_by_leads)
         self._head = NaoqiHead(walking, self._walk)
         self._camera = NaoqiCamera(
             channel("camera"),

@@ -5,13 +5,12 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable
 from contextlib import suppress
 
 from hal.errors import HalError, MotionRefusedError
 from hal.naoqi.channel import Channel
-from hal.naoqi.errors import CallRefusedError, ServiceMissingError
 from hal.naoqi.guard import Guard
+from hal.naoqi.lead import Lead
 from hal.naoqi.life import Household
 from hal.naoqi.limits import (
     STILL,
@@ -21,18 +20,15 @@ from hal.naoqi.limits import (
     clipped_velocity,
     nominal_velocity,
 )
-from hal.naoqi.memory import Sensed
 from hal.naoqi.motion import Motion
 from hal.naoqi.odometry import Odometry
-from hal.naoqi.readiness import Readiness, needs_rising, objection, read_readiness
-from hal.naoqi.rising import Rising
 from hal.naoqi.session import Call, Session
+from hal.naoqi.stance import Stance
 from hal.types import PlanarMotion, WalkStatus
 
 log = logging.getLogger(__name__)
 
 PERIOD_S = 0.04
-READY_EVERY = 5
 EARLY_S = 0.05
 """A walk that is refused is refused at once."""
 STOP_S = 3.0
@@ -48,19 +44,16 @@ class NaoqiWalk:
         channel: Channel,
         guard: Guard,
         household: Household,
-        memory: Callable[[], Sensed],
-        wake_up: bool,
+        stance: Stance,
+        velocity_by_leads: bool,
     ) -> None:
         self._channel, self._guard, self._household = channel, guard, household
-        self._memory, self._wake_up = memory, wake_up
+        self.stance, self._by_leads = stance, velocity_by_leads
         self._lock = threading.RLock()
         self._motion: Motion | None = None
         self._stopping: Call | None = None
-        self._rising: Rising | None = None
         self._active = False
         self._odometry = Odometry()
-        self._turn = 0
-        self.readiness = Readiness()
         self.error: str | None = "not connected yet"
         self.refusal: str | None = None
         self._closing = threading.Event()
@@ -76,9 +69,7 @@ class NaoqiWalk:
         """Walk by a displacement; see `hal.protocols.Walk`. Raises MotionRefusedError."""
         check(step, valid_for_s)
         sent = clipped_travel(step)
-        self._begin(
-            "moveTo", sent, nominal_velocity(sent), valid_for_s, ends_itself=True
-        )  # fmt: skip
+        self._begin("moveTo", sent, nominal_velocity(sent), valid_for_s)
         return sent
 
     def set_velocity(self, velocity: PlanarMotion, valid_for_s: float) -> PlanarMotion:
@@ -87,8 +78,13 @@ class NaoqiWalk:
         sent = clipped_velocity(velocity)
         if sent == STILL:
             self.stop()
+        elif self._by_leads:
+            now_s = time.monotonic()
+            lead = Lead(sent, self._odometry.pose, now_s)
+            way = lead.displacement(self._odometry.pose, now_s)
+            self._begin("moveTo", way, sent, valid_for_s, lead)
         else:
-            self._begin("move", sent, sent, valid_for_s, ends_itself=False)
+            self._begin("move", sent, sent, valid_for_s)
         return sent
 
     def renew(self, valid_for_s: float) -> None:
@@ -97,6 +93,7 @@ class NaoqiWalk:
         with self._lock:
             if self._motion is not None:
                 self._guard.arm(_deadline_ns(valid_for_s))
+                self._lead_on(self._motion)
 
     def stop(self) -> None:
         """End on both feet as soon as is safe. Raises HalError when NAOqi cannot be told.
@@ -105,8 +102,7 @@ class NaoqiWalk:
         """
         with self._lock:
             self._motion = None
-            if self._rising is not None:
-                self._rising.cancel()
+            self.stance.cancel()
             self._stopping = self._channel.session.post("ALMotion", "stopMove")
             with suppress(MotionRefusedError):
                 self._guard.arm(_deadline_ns(STANDS_S))
@@ -115,12 +111,11 @@ class NaoqiWalk:
         """What the walk does now; while the connection is cut, what was known last."""
         with self._lock:
             motion = self._motion
-            busy = (motion, self._rising, self._stopping)
-            moving = self._active or any(one is not None for one in busy)
+            under_way = motion is not None or self._stopping is not None
             return WalkStatus(
                 stamp_ns=time.monotonic_ns(),
-                moving=moving,
-                fallen=objection(self._memory()) is not None,
+                moving=self._active or under_way or self.stance.is_rising,
+                fallen=self.stance.fallen,
                 velocity=STILL if motion is None else motion.told,
                 odometry=self._odometry.pose,
             )
@@ -129,11 +124,11 @@ class NaoqiWalk:
         """Why the head may not be turned now."""
         if self.error is not None:
             return self.error
-        return "the robot has fallen" if self._memory().lies else None
+        return "the robot has fallen" if self.stance.lies else None
 
     def halt(self) -> None:
         """Stop if anything moves, or may. Raises HalError."""
-        if self._active or self._motion is not None or self._rising is not None:
+        if self._active or self._motion is not None or self.stance.is_rising:
             self.stop()
 
     def close(self) -> None:
@@ -158,56 +153,45 @@ class NaoqiWalk:
         sent: PlanarMotion,
         told: PlanarMotion,
         valid_for_s: float,
-        *,
-        ends_itself: bool,
+        lead: Lead | None = None,
     ) -> None:
         try:
-            self._send(method, sent, told, valid_for_s, ends_itself=ends_itself)
+            with self._lock:
+                self._refuse_if_unready()
+                self._guard.arm(_deadline_ns(valid_for_s))
+                call = self._walk(method, sent)
+                self._stopping = None
+                self._motion = Motion(told, call, method == "moveTo", self._guard.fired, lead)
         except MotionRefusedError as error:
             self.refusal = str(error)
             raise
         self.refusal = None
 
-    def _send(
-        self,
-        method: str,
-        sent: PlanarMotion,
-        told: PlanarMotion,
-        valid_for_s: float,
-        *,
-        ends_itself: bool,
-    ) -> None:
-        with self._lock:
-            self._refuse_if_unready()
-            self._guard.arm(_deadline_ns(valid_for_s))
-            try:
-                call = self._channel.session.post("ALMotion", method, sent.x, sent.y, sent.yaw)
-                refused = call.wait(EARLY_S) and call.result(0.0) is False
-            except HalError as error:
-                raise MotionRefusedError(str(error)) from None
-            if refused:
-                raise MotionRefusedError(f"ALMotion.{method} refused to walk")
-            self._stopping = None
-            self._motion = Motion(told, call, ends_itself, self._guard.fired)
-
     def _refuse_if_unready(self) -> None:
-        if self.error is not None:
-            raise MotionRefusedError(self.error)
-        reason = objection(self._memory())
-        if reason is None and self._rising is not None:
-            reason = "the robot is standing up; ask again when it stands"
-        # while it walks nobody knows its posture
-        if reason is None and not self._active and self._motion is None:
-            reason = self._rise_if_needed()
+        reason = self.error
+        if reason is None:
+            walks = self._active or self._motion is not None
+            reason = self.stance.refusal(walks=walks)
         if reason is not None:
             raise MotionRefusedError(reason)
 
-    def _rise_if_needed(self) -> str | None:
-        reason = needs_rising(self.readiness)
-        if reason is None or not self._wake_up:
-            return reason
-        self._rising = Rising()
-        return f"{reason}: it stands up now; ask again when it stands"
+    def _walk(self, method: str, sent: PlanarMotion) -> Call:
+        try:
+            call = self._channel.session.post("ALMotion", method, sent.x, sent.y, sent.yaw)
+            refused = call.wait(EARLY_S) and call.result(0.0) is False
+        except HalError as error:
+            raise MotionRefusedError(str(error)) from None
+        if refused:
+            raise MotionRefusedError(f"ALMotion.{method} refused to walk")
+        return call
+
+    def _lead_on(self, motion: Motion) -> None:
+        """Send the next displacement of a velocity, if it is due."""
+        now_s = time.monotonic()
+        if motion.lead is None or not motion.lead.is_due(now_s):
+            return
+        way = motion.lead.displacement(self._odometry.pose, now_s)
+        motion.call = self._walk("moveTo", way)
 
     def _run(self) -> None:
         due_s = time.monotonic()
@@ -231,9 +215,7 @@ class NaoqiWalk:
         where = session.post("ALMotion", "getRobotPosition", True)
         active = bool(asked.result())
         pose = where.result()
-        if self._turn % READY_EVERY == 0:
-            self.readiness = read_readiness(session)
-        self._turn += 1
+        self.stance.read(session)
         with self._lock:
             self._active = active
             self._odometry.take(pose)
@@ -243,15 +225,15 @@ class NaoqiWalk:
     def _take_over(self, session: Session) -> None:
         """A robot that was left walking stands first of all (S8), whoever left it so."""
         with self._lock:
-            self._motion = self._rising = self._stopping = None
+            self._motion = self._stopping = None
+            self.stance.forget()
         self._odometry.restart()
         session.call("ALMotion", "stopMove", timeout_s=STOP_S)
         self._household.take_over(session)
 
     def _follow(self, session: Session, active: bool) -> None:
         """See what has become of the motion, of the stop and of standing up."""
-        if self._rising is not None:
-            self._rise(session)
+        self.stance.rise(session)
         motion = self._motion
         if motion is not None:
             motion.note_active(active)
@@ -269,19 +251,6 @@ class NaoqiWalk:
             _log_failure(call)
         if self._motion is None and not active and self._stopping is None:
             self._guard.disarm()
-
-    def _rise(self, session: Session) -> None:
-        assert self._rising is not None
-        try:
-            self._rising.turn(session)
-        except (CallRefusedError, ServiceMissingError) as error:
-            log.warning("standing up failed: %s", error)
-        except HalError:
-            self._rising = None
-            raise
-        if self._rising.is_over:
-            self._rising = None
-            self.readiness = read_readiness(session)
 
 
 def _deadline_ns(valid_for_s: float) -> int:

@@ -36,6 +36,7 @@ def test_picture_is_the_one_that_was_taken_when_it_says(peer, robot):
     assert not robot.camera.other_clock
 
 
+@pytest.mark.slow
 def test_joints_and_pictures_share_a_clock(peer, robot):
     """The head turns: where a joint was at a time is where it says it was, but for a cycle."""
     robot.head.look(HeadAngles(-0.8, 0.0), 5.0)
@@ -52,6 +53,7 @@ def test_joints_and_pictures_share_a_clock(peer, robot):
     assert 0.0 < late_s < 0.06
 
 
+@pytest.mark.slow
 def test_three_ways_to_read(robot):
     frame = robot.camera.unseen(5.0)
     newer = robot.camera.unseen(5.0)
@@ -76,6 +78,7 @@ def test_controls_are_locked_for_colour_and_put_back(peer, robot):
     assert peer.ask.call("ALVideoDevice", "getSubscribers") == []
 
 
+@pytest.mark.slow
 def test_values_that_are_given_are_held_and_what_did_not_take_is_told(peer):
     robot = peer.robot(controls={"exposure": 120, "gain": 40, "white_balance": 4000})
     try:
@@ -112,7 +115,7 @@ def test_camera_that_refuses_is_one_line(peer):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("form", ["list", "tuple"])
+@pytest.mark.parametrize("form", ["list", pytest.param("tuple", marks=pytest.mark.slow)])
 def test_pixels_that_come_as_a_text_are_the_same_pixels(peer, form):
     """A dynamic list of undeclared bytes: what qi makes of it is a text of their Python form."""
     peer.again("become", {"image": form})
@@ -131,6 +134,7 @@ def test_pixels_that_come_as_a_text_are_the_same_pixels(peer, form):
         peer.again("become", {"image": "raw"})
 
 
+@pytest.mark.slow
 def test_pictures_with_a_clock_of_their_own_are_aligned_by_their_arrival(peer):
     peer.again("become", {"picture_offset_s": -7.25})
     robot = peer.robot()

@@ -55,6 +55,7 @@ def test_daemon_that_dies_or_hangs_leaves_a_standing_robot(peer, number):
         end(process)
 
 
+@pytest.mark.slow
 def test_what_a_killed_daemon_could_not_put_back_the_next_one_does(peer):
     end(start(peer, "stand"))
     assert peer.ask.call("ALAutonomousLife", "getState") == "disabled"
@@ -81,6 +82,7 @@ def test_no_walk_without_its_watchdog(peer, walker):
     walker.walk.move_to(PlanarMotion(0.02, 0.0, 0.0), 5.0)
 
 
+@pytest.mark.slow
 def test_watchdog_that_hangs_stops_the_walk_and_is_told(peer, walker):
     walker.walk.set_velocity(PlanarMotion(0.09, 0.0, 0.0), 10.0)
     until(peer.is_moving)
@@ -130,6 +132,7 @@ def test_session_cut_in_the_middle_of_a_walk(peer, network):
         robot.close()
 
 
+@pytest.mark.slow
 def test_restart_of_the_robot_in_the_middle_of_a_walk(peer, robot):
     """Services are fetched again, life and camera taken over again, and put back at the end."""
     robot.walk.move_to(FAR, 5.0)
@@ -148,6 +151,7 @@ def test_restart_of_the_robot_in_the_middle_of_a_walk(peer, robot):
     assert peer.ask.call("ALVideoDevice", "getParameter", 0, AUTO_EXPOSITION) == 1
 
 
+@pytest.mark.slow
 def test_robot_that_hangs_makes_everything_stale_and_refusing(peer, walker):
     os.kill(peer.process.pid, signal.SIGSTOP)
     try:
@@ -163,6 +167,7 @@ def test_robot_that_hangs_makes_everything_stale_and_refusing(peer, walker):
     assert walker.body.await_at(time.monotonic_ns(), 10.0)
 
 
+@pytest.mark.slow
 def test_missing_services_are_done_without_or_told(peer):
     missing = ["ALAutonomousLife", "ALBasicAwareness", "ALRobotPosture"]
     peer.again("become", {"missing": missing})

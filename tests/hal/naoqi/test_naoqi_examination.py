@@ -26,6 +26,7 @@ def test_well(robot):
     assert "held" in found["camera controls"].text
 
 
+@pytest.mark.slow
 def test_unwell(peer, robot):
     hot = "Device/SubDeviceList/LKneePitch/Temperature/Sensor/Status"
     peer.ask.call("ALMemory", "insertData", hot, 2.0)
@@ -43,6 +44,7 @@ def test_unwell(peer, robot):
     assert "not today" in by_check(robot)["walk"].text
 
 
+@pytest.mark.slow
 def test_closed(robot):
     robot.close()
     (only,) = robot.examine()

@@ -9,6 +9,7 @@ import pytest
 
 from hal.backends import OpenOptions
 from hal.errors import BackendError, HalError, MotionRefusedError
+from hal.naoqi.lead import AHEAD_S, Lead, along
 from hal.naoqi.limits import check, clipped_travel, clipped_velocity, nominal_velocity
 from hal.naoqi.login import find_login
 from hal.naoqi.memory import CONTACT_KEY, FALLEN_KEY, FSR_KEYS, INERTIAL_KEYS, KEYS, sensed
@@ -154,3 +155,38 @@ def test_options_are_checked(section, told, monkeypatch):
     monkeypatch.delenv("NAOQI_PASSWORD", raising=False)
     with pytest.raises(BackendError, match=told):
         checked(OpenOptions(section=section))
+
+
+@pytest.mark.parametrize("velocity", [(0.09, 0.0, 0.0), (0.05, -0.02, 0.4), (0.0, 0.0, -0.5)])
+def test_displacements_lead_along_the_velocity(velocity):
+    """Small steps put together, which need no formula of an arc, come to the same place."""
+    x = y = yaw = 0.0
+    steps = 20_000
+    for _ in range(steps):
+        dx, dy = velocity[0] / steps, velocity[1] / steps
+        x += math.cos(yaw) * dx - math.sin(yaw) * dy
+        y += math.sin(yaw) * dx + math.cos(yaw) * dy
+        yaw += velocity[2] / steps
+    assert along(PlanarMotion(*velocity), 1.0) == pytest.approx((x, y, yaw), abs=1e-5)
+
+
+def test_lead_is_a_little_ahead_and_waits_for_who_stays_behind():
+    still = PlanarMotion(0.0, 0.0, 0.0)
+    lead = Lead(PlanarMotion(0.1, 0.0, 0.0), still, 10.0)
+    assert lead.is_due(10.0)
+    assert lead.displacement(still, 10.0).x == pytest.approx(0.1 * AHEAD_S)
+    assert not lead.is_due(10.1)
+    assert lead.is_due(10.5)
+    ahead = lead.displacement(PlanarMotion(0.05, 0.0, 0.0), 10.5)
+    assert ahead.x == pytest.approx(0.1 * (0.5 + AHEAD_S) - 0.05)
+    # a robot that is held back is not asked to catch up
+    held = lead.displacement(PlanarMotion(0.06, 0.0, 0.0), 20.0)
+    assert held.x == pytest.approx(0.1 * AHEAD_S)
+
+
+@pytest.mark.parametrize(
+    ("url", "by_leads"),
+    [("tcp://127.0.0.1:9559", False), ("tcp://localhost:9559", False), ("tcp://nao.local:1", True)],
+)
+def test_velocity_is_led_where_a_network_lies_between(url, by_leads):
+    assert checked(OpenOptions(section={"url": url})).velocity_by_leads is by_leads

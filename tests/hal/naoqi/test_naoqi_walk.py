@@ -8,6 +8,7 @@ import time
 import numpy as np
 import pytest
 from naoqi_peer import until
+from naoqi_proxy import Network
 
 from hal.errors import MotionRefusedError
 from hal.types import HeadAngles, PlanarMotion
@@ -64,6 +65,7 @@ def test_blocking_move_delays_neither_angles_nor_head(peer, walker):
     until(lambda: not peer.is_moving())
 
 
+@pytest.mark.slow
 def test_velocity_is_walked_while_it_is_renewed(peer, walker):
     sent = walker.walk.set_velocity(PlanarMotion(1.0, 0.0, 0.0), 0.5)
     assert sent.x == pytest.approx(0.095)
@@ -80,7 +82,7 @@ def test_velocity_is_walked_while_it_is_renewed(peer, walker):
     assert walker.guard.fired == 0
 
 
-@pytest.mark.parametrize("kind", ["velocity", "displacement"])
+@pytest.mark.parametrize("kind", ["velocity", pytest.param("displacement", marks=pytest.mark.slow)])
 def test_motion_that_is_not_renewed_is_ended_by_the_watchdog(peer, walker, kind):
     """S1, for a walk server that hangs: told to stop within 0.3 s of its time, standing in 1.2."""
     begin_s = time.monotonic()
@@ -126,15 +128,15 @@ def refused(walker):
 
 def test_low_stiffness_is_told_and_stood_up_from(peer, walker):
     peer.motion("setStiffnesses", "LKneePitch", 0.4)
-    until(lambda: (walker.walk.readiness.leg_stiffness or 1.0) < 0.5)
+    until(lambda: (walker.walk.stance.readiness.leg_stiffness or 1.0) < 0.5)
     assert "stiffness of the legs is 0.4, NAOqi walks only above 0.6" in refused(walker)
     assert not peer.is_moving()
     until(lambda: not walker.walk.status().moving)
-    until(lambda: (walker.walk.readiness.leg_stiffness or 0.0) > 0.9)
+    until(lambda: (walker.walk.stance.readiness.leg_stiffness or 0.0) > 0.9)
     walker.walk.move_to(AHEAD, 0.5)
-    finish(walker)
 
 
+@pytest.mark.slow
 def test_resting_robot_moves_nothing_until_a_walk_is_asked_for(peer):
     """S8: opening stiffens nothing; the first walk makes it stand up, the next one walks."""
     peer.motion("rest")
@@ -156,6 +158,7 @@ def test_resting_robot_moves_nothing_until_a_walk_is_asked_for(peer):
         walker.close()
 
 
+@pytest.mark.slow
 def test_resting_robot_stays_so_if_told(peer):
     peer.motion("rest")
     walker = peer.robot(wake_up=False)
@@ -193,3 +196,30 @@ def test_move_that_refuses_is_refused_with_its_reason(peer, walker):
     # stiffness that the backend has not seen yet: moveTo returns False
     peer.motion("setStiffnesses", "Legs", 0.5)
     assert "refused to walk" in refused(walker) or "stiffness" in refused(walker)
+
+
+@pytest.mark.slow
+def test_velocity_over_a_network_ends_by_itself(peer):
+    """Cable out: neither daemon nor watchdog reaches a robot that has only a little way left."""
+    network = Network(peer.url)
+    walker = peer.robot(url=network.url, velocity_by_leads=True)
+    try:
+        sent = walker.walk.set_velocity(PlanarMotion(0.06, 0.0, 0.15), 1.0)
+        begin_s = time.monotonic()
+
+        def is_under_way():
+            walker.walk.renew(1.0)
+            assert walker.walk.status().velocity == sent
+            return time.monotonic() - begin_s > 2.5
+
+        until(is_under_way)
+        assert peer.is_moving()
+        # it keeps to the velocity, ahead by no more than it leads
+        assert 0.04 * 2.5 < walked(peer) < 0.06 * (2.5 + 0.8) + 0.02
+        network.cut()
+        cut_s = time.monotonic()
+        until(lambda: not peer.is_moving())
+        assert time.monotonic() - cut_s < 2.5
+    finally:
+        walker.close()
+        network.close()
