@@ -20,6 +20,7 @@ from hal.lola.channel import Wishes
 from hal.lola.client import ClientDesk
 from hal.lola.core import Core, Wanted
 from hal.lola.link import Link, LinkError, connect
+from hal.lola.modes import Mode
 from hal.lola.priority import be_first
 from hal.lola.reporting import status_of
 from hal.lola.sensors import MessageError
@@ -36,6 +37,14 @@ STALLED_NS = 2_000_000_000
 SILENT_NS = 200_000_000
 LEAVE_MAX_NS = 15_000_000_000
 CONNECT_S = 0.5
+
+
+_SAID: dict[Mode | None, str] = {
+    "hold": "holding the pose the robot is in; a press of the chest button sits or stands it",
+    "stand": "standing up",
+    "rest": "sitting down, then letting go",
+    "fallen": "the robot has fallen: letting go",
+}
 
 
 class Server:
@@ -87,7 +96,10 @@ class Server:
             self._desk.serve(self._wishes, now_ns)
             if data is not None:
                 self._heard_ns = now_ns
+                before = self._session.mode
                 self._session.tick(data, self._wanted(now_ns))
+                if self._session.mode != before:
+                    self._say(_SAID[self._session.mode])
                 self._trouble = ""
             elif now_ns - self._heard_ns > STALLED_NS:
                 raise LinkError("LoLA went silent")
@@ -154,7 +166,7 @@ class Server:
             return False
         if self._leave_ns is None:
             self._leave_ns = now_ns
-            self._say("leaving: sitting down first")
+            self._say("leaving")
         if self._session is not None and self._session.done:
             self._say("left: the last message was safe")
             return True

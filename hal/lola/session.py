@@ -12,6 +12,7 @@ from hal.lola.actuators import encode_actuators
 from hal.lola.core import Core, CoreState, Wanted
 from hal.lola.layout import PERIOD_S
 from hal.lola.link import Link, LinkError
+from hal.lola.modes import Mode
 from hal.lola.sensors import Sensors, decode_sensors
 from hal.lola.shared import Shared, body_values
 from hal.lola.standing import StandingState
@@ -61,9 +62,14 @@ class Session:
         return self._safe_ticks >= SAFE_TICKS
 
     @property
+    def mode(self) -> Mode | None:
+        """What the robot is about; None before the first message."""
+        return None if self.state is None else self.state.mode
+
+    @property
     def resting(self) -> bool:
         """Whether it sat limp when it was last heard of."""
-        return self._resting if self.state is None else self.state.mode == "rest"
+        return self._resting if self.state is None else self.mode == "rest"
 
     def tick(self, data: bytes, wanted: Wanted) -> None:
         """Answer a message. Raises MessageError, LinkError."""

@@ -82,7 +82,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Robot]:
 @pytest.fixture(scope="module")
 def daemon(robot: Robot, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Daemon]:
     more = (
-        f'[lola]\nsocket = "{robot.served["socket"]}"\nsit_after_s = 2.0\n'
+        f'[lola]\nsocket = "{robot.served["socket"]}"\n\n'
         f'[camera]\ndevice = "{robot.served["camera"]}"\n'
     )
     made = Daemon(tmp_path_factory.mktemp("daemon"), more, backend="lola")

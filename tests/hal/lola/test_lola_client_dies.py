@@ -6,66 +6,20 @@ The robot is the simulated one, behind its own LoLA on a real socket; the daemon
 from __future__ import annotations
 
 import signal
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from lola_peer import Peer
 from lola_script import Client, hire, wait_for
 
 from hal.lola.channel import LeaveWish
 from hal.lola.poses import LEGS, SEAT, STAND
 from hal.nao.joints import JOINT_INDEX
-from hal.scenario import Scenario
-from sim_backend.clocks import RealClock
-from sim_backend.defaults import resolved
-from sim_backend.speak.lola_body import JointWorld
-from sim_backend.speak.lola_server import LolaServer
 
 YAW = JOINT_INDEX["HeadYaw"]
-
-
-class Peer:
-    """The simulated robot and its LoLA, in threads of this process."""
-
-    def __init__(self, folder: Path, angles: np.ndarray) -> None:
-        self.path = str(folder / "robocup")
-        self.world = JointWorld(resolved(Scenario()), "v6", 0, time.monotonic_ns, angles)
-        self._clock = RealClock(self.world)
-        self.lines: list[str] = []
-        self._news = threading.Condition()
-        self.server = LolaServer(self.path, self.world, self._say)
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self.server.run, args=(self._stop,))
-        self._thread.start()
-
-    def _say(self, text: str) -> None:
-        with self._news:
-            self.lines.append(text)
-            self._news.notify_all()
-
-    def wait_for_line(self, part: str, timeout_s: float = 15.0) -> str:
-        with self._news:
-            found = self._news.wait_for(
-                lambda: next((line for line in self.lines if part in line), None), timeout_s
-            )
-        assert found, self.lines
-        return found
-
-    def wait_until(self, what, timeout_s: float = 15.0) -> None:
-        """Until something holds of the true joint angles; looked at as often as they change."""
-        limit = time.monotonic() + timeout_s
-        tick = threading.Event()
-        while not what(self.world.angles_rad):
-            assert time.monotonic() < limit, self.world.angles_rad
-            tick.wait(0.005)
-
-    def close(self) -> None:
-        self._stop.set()
-        self._thread.join()
-        self._clock.close()
 
 
 @pytest.fixture
