@@ -65,6 +65,7 @@ class Server:
         self._heard_ns = 0
         self._leave_ns: int | None = None
         self._trouble = ""
+        self._unreachable = False
 
     def leave(self) -> None:
         """Sit down and end."""
@@ -126,8 +127,10 @@ class Server:
         try:
             self._link = connect(self._told.socket, CONNECT_S)
         except LinkError as error:
+            self._unreachable = True
             self._complain(str(error))
         else:
+            self._unreachable = False
             self._counts.connections += 1
             self._heard_ns = time.monotonic_ns()
             self._session = Session(
@@ -171,7 +174,7 @@ class Server:
             self._say("left: the last message was safe")
             return True
         # a LoLA that is not there cannot be told anything; a robot that cannot sit stays stiff
-        nobody = self._link is None
+        nobody = self._link is None and self._unreachable
         return nobody or now_ns - self._leave_ns > LEAVE_MAX_NS
 
     def _tell(self, now_ns: int) -> None:

@@ -70,7 +70,8 @@ class ScriptedLola:
         self.client: socket.socket | None = None
 
     def accept(self) -> None:
-        """Wait for a client."""
+        """Wait for a client; one that was there before is hung up on."""
+        self.hang_up()
         self.client, _ = self._listener.accept()
         self.client.settimeout(PATIENCE_S)
 

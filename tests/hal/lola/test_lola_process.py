@@ -5,12 +5,11 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
-from lola_script import Reply, ScriptedLola, frame, hire, wait_for
+from lola_script import PATIENCE_S, Reply, ScriptedLola, frame, hire, wait_for
 
 from hal.errors import BackendError, MotionRefusedError
 from hal.lola.channel import LeaveWish, LookWish
@@ -21,23 +20,29 @@ CYCLE_S = 0.012
 FASTEST_RAD_S = 7.46
 
 
-@pytest.fixture
-def lola(tmp_path: Path) -> Iterator[ScriptedLola]:
-    script = ScriptedLola(tmp_path)
-    yield script
-    script.close()
-
-
-@pytest.fixture
-def line(lola: ScriptedLola) -> Iterator[Line]:
-    """A process that is connected and has answered nothing yet; it ends with its LoLA."""
-    made = hire(lola.path, sit_after_s=60.0)
-    lola.accept()
+@pytest.fixture(scope="module")
+def script(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ScriptedLola]:
+    made = ScriptedLola(tmp_path_factory.mktemp("lola"))
     yield made
-    lola.close()
-    with suppress(MotionRefusedError):
-        made.send(LeaveWish())
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def line(script: ScriptedLola) -> Iterator[Line]:
+    """One process for all tests; it ends when there is no LoLA for it any more."""
+    made = hire(script.path, sit_after_s=60.0)
+    yield made
+    script.close()
+    made.send(LeaveWish())
     assert made.close(5.0)
+
+
+@pytest.fixture
+def lola(script: ScriptedLola, line: Line) -> ScriptedLola:
+    """A fresh connection, on which nothing has been sent."""
+    line.status()
+    script.accept()
+    return script
 
 
 class Cycles:
@@ -60,6 +65,14 @@ class Cycles:
             if stiffness > 0.0:
                 head = {name: reply.angle(name) for name in head}
             deadline += CYCLE_S
+
+    def wait_for(self, count: int) -> None:
+        """Until there have been so many."""
+        limit = time.monotonic() + PATIENCE_S
+        while len(self.replies) < count:
+            assert time.monotonic() < limit
+            assert self._thread.is_alive()
+            self._stop.wait(CYCLE_S)
 
     def stop(self) -> Reply:
         self._stop.set()
@@ -99,9 +112,9 @@ def test_head_goes_on_without_a_jump_after_a_stall(
     lola: ScriptedLola, line: Line, stall_s: float
 ) -> None:
     cycles = Cycles(lola)
-    wait_for(line, lambda s: s.ticks > 60)
+    cycles.wait_for(60)
     look(line, 1.5)
-    wait_for(line, lambda s: s.ticks > 90)
+    cycles.wait_for(90)
     before = cycles.stop()
     assert 0.05 < before.angle("HeadYaw") < 1.5
     assert lola.silent_for(stall_s)
@@ -112,7 +125,7 @@ def test_head_goes_on_without_a_jump_after_a_stall(
     body = line.shared.newest()
     assert body is not None
     assert time.monotonic_ns() - body.stamp_ns < 1e9
-    assert line.status().connections == 1
+    assert lola.silent_for(0.02), "and it is still connected"
 
 
 def test_backlog_after_a_stall_is_answered_once_for_its_newest(
@@ -131,23 +144,26 @@ def test_silence_for_ever_refuses_and_calls_anew_and_starts_from_the_measured_po
     lola: ScriptedLola, line: Line
 ) -> None:
     lola.exchange(frame())
+    connections = wait_for(line, lambda s: s.connected).connections
     status = wait_for(line, lambda s: not s.connected)
     assert "silent" in (status.refusal or "")
     assert "silent" in (status.head_refusal or "")
+    assert lola.wait_for_end() == b"", "it hangs up by itself"
     lola.accept()
     first = lola.exchange(frame({"HeadYaw": -0.5, "LKneePitch": 1.25}, stiffness=0.5))
     assert (first.angle("HeadYaw"), first.angle("LKneePitch")) == (-0.5, 1.25)
-    assert wait_for(line, lambda s: s.connected).connections == 2
+    assert wait_for(line, lambda s: s.connected).connections == connections + 1
 
 
 def test_lola_that_restarts_is_found_again(lola: ScriptedLola, line: Line) -> None:
     lola.exchange(frame())
+    connections = wait_for(line, lambda s: s.connected).connections
     lola.hang_up()
     status = wait_for(line, lambda s: not s.connected)
     assert "hung up" in (status.refusal or "")
     lola.accept()
     lola.exchange(frame())
-    assert wait_for(line, lambda s: s.connected).connections == 2
+    assert wait_for(line, lambda s: s.connected).connections == connections + 1
 
 
 @pytest.mark.parametrize(
@@ -163,6 +179,7 @@ def test_lola_that_restarts_is_found_again(lola: ScriptedLola, line: Line) -> No
 def test_unreadable_message_repeats_the_last_answer_and_begins_anew(
     lola: ScriptedLola, line: Line, spoilt: bytes
 ) -> None:
+    bad = line.status().bad
     for _ in range(5):
         before = lola.exchange(frame({"HeadYaw": 0.5}))
     repeated = lola.exchange(spoilt)
@@ -170,11 +187,12 @@ def test_unreadable_message_repeats_the_last_answer_and_begins_anew(
     assert lola.wait_for_end() == b""
     lola.accept()
     assert lola.exchange(frame({"HeadYaw": 0.25})).angle("HeadYaw") == 0.25
-    assert wait_for(line, lambda s: s.connected).bad == 1
+    assert wait_for(line, lambda s: s.connected).bad == bad + 1
 
 
 def test_message_in_pieces_is_one_message(lola: ScriptedLola, line: Line) -> None:
     lola.exchange(frame())
+    bad = line.status().bad
     whole = frame({"HeadYaw": 0.5})
     for at in range(0, 896, 128):
         assert lola.silent_for(0.002)
@@ -183,14 +201,14 @@ def test_message_in_pieces_is_one_message(lola: ScriptedLola, line: Line) -> Non
     body = line.shared.newest()
     assert body is not None
     assert body.angles_rad[0] == 0.5
-    assert line.status().bad == 0
+    assert line.status().bad == bad
 
 
 def test_targets_hold_ranges_and_speeds_whatever_is_wished(lola: ScriptedLola, line: Line) -> None:
     cycles = Cycles(lola)
-    wait_for(line, lambda s: s.ticks > 60)
+    cycles.wait_for(60)
     line.send(LookWish(50.0, -9.0, 1e6, time.monotonic_ns() + 5_000_000_000))
-    wait_for(line, lambda s: s.ticks > 140)
+    cycles.wait_for(140)
     cycles.stop()
     yaw = np.array([reply.angle("HeadYaw") for reply in cycles.replies])
     assert yaw.max() == pytest.approx(UPPER_RAD[0], abs=1e-6)
@@ -204,7 +222,7 @@ def test_second_daemon_is_told_that_the_robot_is_taken(lola: ScriptedLola, line:
     line.status()
     with pytest.raises(BackendError, match="another daemon has this robot"):
         hire(lola.path)
-    assert line.status().connections == 1
+    assert lola.silent_for(0.02)
 
 
 def test_lola_that_is_not_there_is_said_and_awaited(tmp_path: Path) -> None:
