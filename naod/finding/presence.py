@@ -43,7 +43,9 @@ TURN_FREE = 0.5
 """Rad from which a board's turn counts: it is shown from the front, and seen from about there."""
 
 TOLERANCES_MAX = 6.0
-PIXELS_RANGE = (12.0, 2000.0)
+PIXELS_RANGE = (60.0, 2000.0)
+"""Fewer do not count against it: it may be far away. More do not count for it."""
+
 PIXELS_MIDDLE = 100.0
 
 
