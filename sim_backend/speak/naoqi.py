@@ -8,6 +8,7 @@ SimWorld, with the truth and with faults.
 
 from __future__ import annotations
 
+import gc
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -19,7 +20,7 @@ from sim_backend.speak.naoqi_options import PeerOptions, split
 DEFAULT_URL = "tcp://127.0.0.1:9559"
 PAUSE_S = 0.5
 """How long a restart takes."""
-SHORT_S = 0.1
+SHORT_S = 0.2
 
 
 def serve(
@@ -47,6 +48,7 @@ def serve(
     try:
         _serve(robot, _url(address), stop, ready)
     finally:
+        _settle()
         robot.close()
 
 
@@ -73,7 +75,11 @@ def _serve(
     if gate is not None:
         gate.close()
     session.close()
-    # what was called just before the end returns meanwhile
+
+
+def _settle() -> None:
+    """Let qi's threads drop what they hold of ours: an interpreter must not end under them."""
+    gc.collect()
     threading.Event().wait(SHORT_S)
 
 
