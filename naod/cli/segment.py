@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from naod.cli.output import Progress, print_json
 from naod.cli.pictures import Picture, find_files, read_pictures
+from naod.cli.segment_classes import segment_classes
 from naod.config import SegmentationConfig
 from naod.errors import InputError
 from naod.files import write_whole
@@ -22,11 +23,25 @@ from naod.perception.segmenter import Segmenter
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """INPUT... --model MODEL.toml [--out DIR] [--json]."""
+    """INPUT... (--model MODEL.toml | --unsupervised N) [--out DIR] [--json]."""
     parser.add_argument("inputs", nargs="+", metavar="INPUT", help="pictures, folders or videos")
-    parser.add_argument("--model", required=True, type=Path, metavar="MODEL.toml")
+    how = parser.add_mutually_exclusive_group(required=True)
+    how.add_argument("--model", type=Path, metavar="MODEL.toml")
+    how.add_argument(
+        "--unsupervised",
+        type=_count,
+        metavar="N",
+        help="no learnt colour: N classes, estimated together with their colours",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write masks there, 255 = object")
     parser.add_argument("--json", action="store_true", help="one JSON line per picture")
+
+
+def _count(text: str) -> int:
+    """Two to eight classes. Raises ArgumentTypeError."""
+    if text not in {str(n) for n in range(2, 9)}:
+        raise argparse.ArgumentTypeError(f"{text!r}: want a number of classes, 2 to 8")
+    return int(text)
 
 
 class Segmenters:
@@ -49,13 +64,16 @@ class Segmenters:
 
 def run(args: argparse.Namespace) -> int:
     """Segment everything, a line each."""
-    segmenters = Segmenters(load_model(args.model))
+    segmenters = Segmenters(load_model(args.model)) if args.model is not None else None
     files = find_files(args.inputs)
     if args.out is not None:
         _spare_inputs(files, args.out)
     progress = Progress("segmenting")
     for picture in read_pictures(files):
-        line, mask = _segment(segmenters.of(picture), picture)
+        if segmenters is None:
+            line, mask = segment_classes(picture, args.unsupervised)
+        else:
+            line, mask = _segment(segmenters.of(picture), picture)
         if args.out is not None:
             png = cv2.imencode(".png", mask)[1].tobytes()
             write_whole(args.out / f"{picture.stem}.png", png)

@@ -115,8 +115,9 @@ def load_model(path: Path) -> ColourModel:
     """
     text = read_text(path)
     model = parse_toml(text, _TYPES[parse_toml(text, _Kind, str(path)).kind], str(path))
-    for one in (model, *(model.components if isinstance(model, ColourMixture) else ())):
-        _check(np.array([one.mean, *one.covariance]), path)
+    _check(model, path)
+    for component in model.components if isinstance(model, ColourMixture) else ():
+        _check(component, path)
     if isinstance(model, ColourTable):
         try:
             unpacked(model.table)
@@ -125,8 +126,9 @@ def load_model(path: Path) -> ColourModel:
     return model
 
 
-def _check(values: NDArray[np.float64], path: Path) -> None:
-    """Mean and covariance, (4, 3). Raises InputError."""
+def _check(one: ColourModel | Component, path: Path) -> None:
+    """Raises InputError where it is no Gaussian."""
+    values = np.array([one.mean, *one.covariance])
     covariance = values[1:]
     if not np.isfinite(values).all():
         raise InputError(f"{path}: mean and covariance must be finite")

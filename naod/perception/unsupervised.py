@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.colour_model import STD_FLOOR, ColourModel, model_of
-from naod.perception.mixture import Component, fit, log_density
+from naod.perception.colour_model import STD_FLOOR, ColourModel, Component, model_of
+from naod.perception.mixture import fit, log_density
 
 Floats = NDArray[np.float64]
 
