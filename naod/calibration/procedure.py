@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hal.errors import MotionRefusedError
 from hal.protocols import Robot
-from hal.types import NaoVersion
+from hal.types import HeadAngles, NaoVersion
 from naod.calibration.eyes import Eyes
 from naod.calibration.fit import Expected, Problem, first_estimate, fit, without_odd_views
 from naod.calibration.plan import grid, head_poses, rows_of
@@ -26,6 +27,9 @@ from naod.pose.objects import Rectangle
 
 VIEWS = 16
 NEAR = 0.5
+"""Share of the picture that the first few views keep to."""
+
+STAND_UP_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +61,32 @@ def calibrate(
         recorded = recorder.by_hand(wanted.views)
         return evaluated(recorded, config.camera, robot.info.version, camera, shape, wanted.lens)
     before = head_angles(robot.body.latest())
+    _await_obedience(robot, before, tell)
     try:
         recorded = _driven(recorder, config.camera, camera, shape, wanted.views)
     finally:
         robot.head.look(before, 0.5)
     return evaluated(recorded, config.camera, robot.info.version, camera, shape, wanted.lens)
+
+
+def _await_obedience(robot: Robot, head: HeadAngles, tell: Tell) -> None:
+    """Wait until the head may be turned: the robot may have to be stood up first.
+
+    Raises MotionRefusedError with the robot's reason when it does not come to that.
+    """
+    clock, told = robot.clock, ""
+    give_up_ns = clock.now_ns() + round(STAND_UP_S * 1e9)
+    while True:
+        try:
+            robot.head.look(head, 0.5)
+            return
+        except MotionRefusedError as error:
+            if clock.now_ns() > give_up_ns:
+                raise
+            if str(error) != told:
+                told = str(error)
+                tell(f"waiting: {told}")
+        clock.sleep_until(clock.now_ns() + 200_000_000)
 
 
 def _driven(
