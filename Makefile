@@ -32,7 +32,7 @@ evaluate: setup
 
 wheels: setup
 	$(BIN)/python -m naod.kernels.build --cpu $(CPU)
-	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check -c constraints.txt -w wheels .
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check -c constraints.txt -w wheels ".[naoqi]"
 
 clean:
 	rm -rf $(VENV) build dist wheels naod/kernels.tar naod/kernels.json *.egg-info ~/.cache/naod
