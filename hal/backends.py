@@ -59,7 +59,8 @@ class OpenOptions:
     of `hal.video.v4l2_controls.ControlName`).
 
     The "lola" backend takes `socket`, and when the robot moves by itself: `stand_up` ("button": by
-    the chest button only, "start": once it is connected) and `sit_after_s` without a client.
+    the chest button only, "start": once it is connected) and `sit_after_s` without a client; and
+    `when_fallen` ("limp": let go, "stiff": hold).
 
     The "naoqi" backend takes `url`, `user`, `password_file` ("": the environment's NAOQI_PASSWORD,
     or no login), `wake_up` (bool: whether a walk may wake up a robot that rests) and

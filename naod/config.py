@@ -61,11 +61,13 @@ class LolaConfig(_Section, frozen=True):
     """Where LoLA listens, and when the robot stands up and sits down by itself.
 
     `stand_up`: "button" holds the pose it is found in until the chest button is pressed.
+    `when_fallen`: what becomes of its joints.
     """
 
     socket: str = "/tmp/robocup"
     stand_up: Literal["button", "start"] = "button"
     sit_after_s: Positive = 10.0
+    when_fallen: Literal["limp", "stiff"] = "limp"
 
 
 class CameraConfig(_Section, frozen=True):

@@ -83,8 +83,9 @@ class CoreState(Generic[S]):
 class Core(Generic[S]):
     """The tick around an engine. Holds nothing that changes."""
 
-    def __init__(self, engine: Engine[S]) -> None:
+    def __init__(self, engine: Engine[S], limp_when_fallen: bool = True) -> None:
         self.engine = engine
+        self._limp_when_fallen = limp_when_fallen
 
     def begin(self, sensors: Sensors, resting: bool = False) -> CoreState[S]:
         """Hold what is measured; stay limp if it has fallen, or was `resting` before."""
@@ -205,7 +206,7 @@ class Core(Generic[S]):
     def _lets_go(self, state: CoreState[S], sensors: Sensors) -> bool:
         """Fallen, or seated with nothing left to do; once limp in a mode, it stays so."""
         if state.mode == "fallen":
-            return True
+            return self._limp_when_fallen or state.leaving
         if state.mode != "rest":
             return False
         seated = self.report(state).phase == "seated" and is_seated(sensors.angles_rad)

@@ -11,7 +11,7 @@ from hal.errors import BackendError
 from hal.lola.told import Told
 from hal.video.v4l2_controls import ControlName
 
-_KNOWN = ("socket", "device", "controls", "sit_after_s", "stand_up")
+_KNOWN = ("socket", "device", "controls", "sit_after_s", "stand_up", "when_fallen")
 _PATH_MAX_BYTES = 107
 
 
@@ -46,9 +46,13 @@ def checked(options: OpenOptions) -> tuple[Told, str, Controls]:
     stand_up = section.get("stand_up", "button")
     if stand_up not in ("button", "start"):
         raise BackendError(f"stand_up: neither 'button' nor 'start': {stand_up!r}")
+    when_fallen = section.get("when_fallen", "limp")
+    if when_fallen not in ("limp", "stiff"):
+        raise BackendError(f"when_fallen: neither 'limp' nor 'stiff': {when_fallen!r}")
     told = Told(
         socket=path,
         sit_after_s=float(sit_after_s),
         stand_up="start" if stand_up == "start" else "button",
+        when_fallen="stiff" if when_fallen == "stiff" else "limp",
     )
     return told, device, controls

@@ -43,7 +43,7 @@ _SAID: dict[Mode | None, str] = {
     "hold": "holding the pose the robot is in; a press of the chest button sits or stands it",
     "stand": "standing up",
     "rest": "sitting down, then letting go",
-    "fallen": "the robot has fallen: letting go",
+    "fallen": "the robot has fallen",
 }
 
 
@@ -54,7 +54,9 @@ class Server:
         self._told = told
         self._shared = shared
         self._real_time = real_time
-        self._core: Core[StandingState] = Core(StandingEngine())
+        self._core: Core[StandingState] = Core(
+            StandingEngine(), limp_when_fallen=told.when_fallen == "limp"
+        )
         self._wishes = Wishes()
         self._desk = ClientDesk(told.socket, shared, fd)
         self._counts = Counts()

@@ -45,6 +45,7 @@ def options_of(config: DaemonConfig, beside: Path, real_time: bool = True) -> Op
             "socket": config.lola.socket,
             "stand_up": config.lola.stand_up,
             "sit_after_s": config.lola.sit_after_s,
+            "when_fallen": config.lola.when_fallen,
             "device": _device(config.camera.device, beside),
             "controls": config.camera.controls,
         }

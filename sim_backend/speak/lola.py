@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
 import threading
 import time
@@ -60,6 +62,9 @@ def serve(
                 "fps": options.fps,
             }
         server = LolaServer(address, world, _say)
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGUSR1, lambda _number, _frame: server.press())
+            served["chest_button"] = f"kill -USR1 {os.getpid()}"
         ready(served)
         server.run(stop)
 

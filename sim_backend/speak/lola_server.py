@@ -25,6 +25,7 @@ from sim_backend.speak.lola_wire import ActuatorMessage, ActuatorStream, WireErr
 
 PERIOD_NS = 12_000_000
 READ_BYTES, READS_A_CYCLE = 65536, 8
+PRESS_CYCLES = 20
 SEND_BUFFER_BYTES = 16 * SENSOR_BYTES
 
 
@@ -41,8 +42,13 @@ class LolaServer:
         self._ignored = False
         self._gyro: NDArray[np.float64] = np.zeros(3)
         self._sent = 0
+        self._pressed = 0
         self.button = False
         self.last = ActuatorMessage()
+
+    def press(self) -> None:
+        """Press the chest button and let it go, as quickly as a finger does."""
+        self._pressed = PRESS_CYCLES
 
     def run(self, stop: threading.Event) -> None:
         """Until told to stop; then hangs up and closes."""
@@ -120,7 +126,9 @@ class LolaServer:
         if self._sent % 2 == 0:
             self._gyro = body.gyro_rad_s
         self._sent += 1
-        data = sensor_message(body, self._gyro, self._world.stiffness, self.button)
+        button = self.button or self._pressed > 0
+        self._pressed = max(0, self._pressed - 1)
+        data = sensor_message(body, self._gyro, self._world.stiffness, button)
         try:
             whole = client.send(data) == len(data)
         except BlockingIOError:

@@ -73,11 +73,16 @@ def test_it_says_where_it_listens_and_an_interrupt_ends_it(tmp_path: Path) -> No
     )
     assert robot.stdout is not None
     served = json.loads(robot.stdout.readline())
-    assert served == {"speaks": "lola", "socket": str(path)}
+    press = f"kill -USR1 {robot.pid}"
+    assert served == {"speaks": "lola", "socket": str(path), "chest_button": press}
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as link:
         link.settimeout(10.0)
         link.connect(str(path))
         assert link.recv(896).startswith(b"\x8d\xa8Position")
+        robot.send_signal(signal.SIGUSR1)
+        pressed = b"\xa5Touch\x9e\xca\x3f\x80\x00\x00"
+        assert any(pressed in link.recv(896, socket.MSG_WAITALL) for _ in range(200))
+        assert any(pressed not in link.recv(896, socket.MSG_WAITALL) for _ in range(200))
     robot.send_signal(signal.SIGINT)
     out, error = robot.communicate(timeout=10.0)
     assert robot.returncode == 0

@@ -146,6 +146,7 @@ def press(peer: Peer) -> None:
         ({"sit_after_s": 0.0}, "sit_after_s: not positive"),
         ({"sit_after_s": True}, "sit_after_s: not a number"),
         ({"stand_up": "now"}, "stand_up: neither"),
+        ({"when_fallen": "cry"}, "when_fallen: neither"),
     ],
 )
 def test_impossible_options_are_refused_by_name(
