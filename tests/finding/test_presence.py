@@ -1,0 +1,41 @@
+"""Probabilities in rendered rooms that were not used to fit them."""
+
+import numpy as np
+import pytest
+
+from naod.finding.calibration import fitted, gathered, reliability, text_of
+from naod.finding.presence import WEIGHTS, fitted_weights
+
+SEEDS = range(500, 506)
+"""Each of the things once with and once without the object."""
+
+
+@pytest.fixture(scope="module")
+def samples(tmp_path_factory):
+    return gathered(SEEDS, 5, tmp_path_factory.mktemp("rooms"))
+
+
+def known(samples):
+    return [sample for sample in samples if sample.case != "unknown"]
+
+
+def test_what_is_said_is_what_is_true(samples):
+    """Always saying one half has a Brier score of 0.25."""
+    brier, table = reliability(known(samples), fitted_weights())
+    assert brier < 0.15
+    sure = table[4]
+    assert sure[2] > 5
+    assert abs(sure[0] - sure[1]) < 0.2
+
+
+def test_a_fit_gives_a_file_that_is_read_back(samples, tmp_path):
+    weights = fitted(samples)
+    path = tmp_path / "weights.toml"
+    path.write_text(text_of(weights))
+    text = WEIGHTS.read_text()
+    for line in text_of(weights).splitlines():
+        assert line.split("=", maxsplit=1)[0] in text
+    brier, _ = reliability(known(samples), weights)
+    assert np.isfinite(brier)
+    # fitted to these very rooms it can hardly be worse
+    assert brier < reliability(known(samples), fitted_weights())[0] + 0.02
