@@ -27,7 +27,7 @@ from hal.naoqi.plain import plain
 CONNECT_S = 5.0
 CALL_S = 1.0
 
-_CUT = ("session closed", "socket is not connected", "disconnected", "connection reset")
+_CUT = ("session closed", "not connected", "disconnected", "connection reset")
 
 
 def load_qi() -> Any:

@@ -192,6 +192,17 @@ def test_server_killed_in_flight_then_back_with_services_fetched_again():
     again.kill()
 
 
+def test_service_first_asked_for_after_a_cut_is_no_refusal(server):
+    session = Session(server.url, None)
+    assert session.call("Echo", "back", 1) == 1
+    session.close()
+    for service in ("Echo", "Slow"):
+        with pytest.raises(NotConnectedError, match="not connected"):
+            session.call(service, "quick")
+        with pytest.raises(NotConnectedError):
+            session.has(service)
+
+
 def test_signals_stay_the_daemons_own(server):
     """A qi.Application would take SIGINT and SIGTERM; a session alone does not."""
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
