@@ -10,6 +10,7 @@ import numpy as np
 from hal.nao.joints import JOINT_INDEX
 from hal.types import BodyState, CameraName, Frame, HeadAngles, PlanarMotion, RobotInfo
 from naod.config import CameraConfig, DaemonConfig
+from naod.finding.find import find_object
 from naod.geometry.camera import PinholeCamera, nominal_camera
 from naod.geometry.transforms import Matrix, Vector
 from naod.localisation.base_frame import T_base_camera, is_lifted
@@ -19,7 +20,7 @@ from naod.localisation.ego import EgoPose, ego_pose
 from naod.localisation.looks import Look
 from naod.localisation.placement import Placement, placed
 from naod.messages import WalkState
-from naod.perception.blob import Blob, find_blob
+from naod.perception.blob import Blob
 from naod.perception.colour_model import ColourModel
 from naod.perception.segmenter import Segmentation, Segmenter
 from naod.pose.locate import locate
@@ -36,7 +37,7 @@ class Sighting:
 
     `ray_in_camera`: (3,) towards the blob's centre. `look` and `placement` are None when no pose
     could be had: the outline is cut off, or the feet do not say where the ground is. `blur_px`: how
-    far the object moved through the picture during its exposure.
+    far the object moved through the picture during its exposure. `probability`: that it is it.
     """
 
     stamp_ns: int
@@ -50,6 +51,7 @@ class Sighting:
     paper: EgoPose | None
     placement: Placement | None = None
     blur_px: float = 0.0
+    probability: float = 1.0
 
 
 class Equipment:
@@ -109,9 +111,11 @@ class Equipment:
     ) -> Sighting | None:
         """Find and localise the object in a frame; None when it is not seen."""
         segmentation = self._segmenter_for(model).segment(frame.yuyv)
-        blob = find_blob(segmentation, self.config.segmentation.pixels_min)
-        if blob is None:
+        settings = self.config.segmentation
+        found = find_object(segmentation, self.shape, self.camera, prior, settings)
+        if found is None:
             return None
+        blob = found.blob
         ray = np.append(self.camera.normalised(np.array([blob.centre_px]))[0], 1.0)
         pose = self._locate(frame, blob, self.config.approach.estimator)
         blur_px = self._blur_px(frame, _point(ray, pose, prior), motion)
@@ -131,6 +135,7 @@ class Equipment:
             paper=self._printed(frame, blob, T),
             placement=placement,
             blur_px=blur_px,
+            probability=found.probability,
         )
 
     def _blur_px(self, frame: Frame, point: Vector, motion: CameraMotion | None) -> float:
