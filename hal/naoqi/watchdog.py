@@ -12,6 +12,7 @@ NAOqi answers, `cut` while it does not; `fired` when the robot was told to stop.
 from __future__ import annotations
 
 import json
+import logging
 import os
 import select
 import signal
@@ -133,6 +134,7 @@ class Watchdog:
 
 def main() -> int:
     """Run until told to end, or until the daemon is gone and the robot stands."""
+    logging.basicConfig(level="WARNING", format="watchdog: %(levelname)s: %(message)s")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     line = _first_line()
