@@ -169,7 +169,11 @@ def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Float
         counts = np.array([1.0 if s.told or id(s) in chosen else AGAINST for s in kept])
     counts *= [ALIKE if case == "cut" and s.alike else 1.0 for s in kept]
     signs = np.array([SIGNS.get(name, 0) for name in TERMS], dtype=np.float64)
-    return fit_logistic(np.array([s.row for s in kept]), told, counts, signs)
+    rows = np.array([s.row for s in kept])
+    if case == "unknown":
+        # the things rendered are convex, what people look for need not be
+        rows[:, TERMS.index("lack")] = 0.0
+    return fit_logistic(rows, told, counts, signs)
 
 
 def reliability(samples: Sequence[Sample], weights: dict[str, Floats]) -> tuple[float, Floats]:
