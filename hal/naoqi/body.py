@@ -118,8 +118,10 @@ class Body:
 
     def _poll(self) -> None:
         if self._channel.ensure():
-            self._begin(self._channel.session)
+            self._order = None
         session = self._channel.session
+        if self._order is None:
+            self._begin(session)
         sent_ns = time.monotonic_ns()
         call = session.post("ALMotion", "getAngles", "Body", True)
         memory = None
@@ -138,11 +140,12 @@ class Body:
     def _begin(self, session: Session) -> None:
         """After connecting: which joints there are, and what time it is there."""
         names = session.call("ALMotion", "getBodyNames", "Body")
-        self._order = np.array([JOINT_INDEX.get(str(name), -1) for name in names], dtype=np.intp)
+        order = np.array([JOINT_INDEX.get(str(name), -1) for name in names], dtype=np.intp)
         with self._news:
             self._clock.forget()
         for _ in range(CLOCK_FIRST):
             self._compare_clocks(session)
+        self._order = order
 
     def _take_memory(self, values: object) -> None:
         try:

@@ -37,6 +37,7 @@ class Guard:
         self._news = threading.Condition()
         self._word = ""
         self._heard_s = 0.0
+        self._armed = False
         self.fired = 0
         self._process: subprocess.Popen[bytes] | None = None
         self._reader: threading.Thread | None = None
@@ -92,6 +93,7 @@ class Guard:
         Raises MotionRefusedError when the watchdog does not watch.
         """
         objection = self.objection
+        self._armed = True
         if objection is None and not self._tell(f"arm {deadline_ns}"):
             objection = "the walk's watchdog does not listen"
         if objection is not None:
@@ -99,7 +101,9 @@ class Guard:
 
     def disarm(self) -> None:
         """Nothing moves any more."""
-        self._tell("disarm")
+        if self._armed:
+            self._armed = False
+            self._tell("disarm")
 
     def close(self) -> None:
         """End it; if something is armed, only after the robot has been stopped."""

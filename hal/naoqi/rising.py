@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import time
 
 from hal.errors import HalError
 from hal.naoqi.session import Call, Session
@@ -10,6 +11,7 @@ from hal.naoqi.session import Call, Session
 log = logging.getLogger(__name__)
 
 STEP_S = 30.0
+ANSWERED_S = 0.3
 _STEPS: tuple[tuple[str, str, tuple[object, ...]], ...] = (
     ("ALMotion", "wakeUp", ()),
     ("ALRobotPosture", "goToPosture", ("StandInit", 0.5)),
@@ -22,6 +24,7 @@ class Rising:
     """Begun by a first walk; moved on by `turn`. A step that fails ends it."""
 
     def __init__(self) -> None:
+        self._since_s = time.monotonic()
         self._left = list(_STEPS)
         self._call: Call | None = None
 
@@ -49,5 +52,9 @@ class Rising:
             raise
 
     def cancel(self) -> None:
-        """Go no further than the step under way."""
-        self._left.clear()
+        """Go no further than the step under way.
+
+        A stop that comes at once is the walk server's answer to the refusal, and not meant.
+        """
+        if time.monotonic() - self._since_s > ANSWERED_S:
+            self._left.clear()

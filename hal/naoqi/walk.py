@@ -52,7 +52,7 @@ class NaoqiWalk:
         self._lock = threading.RLock()
         self._motion: Motion | None = None
         self._stopping: Call | None = None
-        self._active = False
+        self._active = self._taken_over = self._closed = False
         self._odometry = Odometry()
         self.error: str | None = "not connected yet"
         self.refusal: str | None = None
@@ -136,6 +136,9 @@ class NaoqiWalk:
         self._closing.set()
         if self._thread.ident is not None:
             self._thread.join(timeout=5.0)
+        if self._closed:
+            return
+        self._closed = True
         try:
             session = self._channel.session
             if self._active or self._motion is not None:
@@ -209,8 +212,11 @@ class NaoqiWalk:
     def _poll(self) -> None:
         self._guard.start()
         if self._channel.ensure():
-            self._take_over(self._channel.session)
+            self._taken_over = False
         session = self._channel.session
+        if not self._taken_over:
+            self._take_over(session)
+            self._taken_over = True
         asked = session.post("ALMotion", "moveIsActive")
         where = session.post("ALMotion", "getRobotPosition", True)
         active = bool(asked.result())

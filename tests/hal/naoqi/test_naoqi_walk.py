@@ -147,13 +147,35 @@ def test_resting_robot_moves_nothing_until_a_walk_is_asked_for(peer):
         until(lambda: peer.motion("getStiffnesses", "Head") == [1.0, 1.0])
         assert max(peer.motion("getStiffnesses", "Legs")) == 0.0
         assert peer.world("calls", "ALMotion.wakeUp") == wakes
+        inits = peer.world("calls", "ALMotion.moveInit")
         assert "resting: it stands up now" in refused(walker)
+        # as the walk server does after every refusal
+        walker.walk.stop()
         assert "standing up" in refused(walker)
         until(lambda: not walker.walk.status().moving)
         assert peer.motion("robotIsWakeUp")
         assert peer.world("calls", "ALMotion.wakeUp") == wakes + 1
+        assert peer.world("calls", "ALMotion.moveInit") == inits + 1
         walker.walk.move_to(AHEAD, 0.5)
         finish(walker)
+    finally:
+        walker.close()
+
+
+@pytest.mark.slow
+def test_standing_up_goes_no_further_when_stopped(peer):
+    peer.motion("rest")
+    walker = peer.robot()
+    try:
+        inits = peer.world("calls", "ALMotion.moveInit")
+        assert "stands up now" in refused(walker)
+        begin_s = time.monotonic()
+        until(lambda: time.monotonic() - begin_s > 0.4)
+        assert walker.walk.status().moving
+        walker.walk.stop()
+        until(lambda: not walker.walk.status().moving)
+        assert peer.motion("robotIsWakeUp")
+        assert peer.world("calls", "ALMotion.moveInit") == inits
     finally:
         walker.close()
 
