@@ -57,20 +57,25 @@ class Edges:
 
 
 @njit(cache=True, nogil=True)
-def _mix(
-    yuyv: NDArray[np.uint8], row: float, column: float, stride: int, offset: int, channel: int
-) -> float:
-    """Bilinear sample of one channel whose columns are `stride` apart from `offset` on."""
-    height, columns = yuyv.shape[0], yuyv.shape[1] // stride
-    row = min(max(row, 0.0), height - 1.0)
-    column = min(max(column, 0.0), columns - 1.0)
-    i, j = min(int(row), max(height - 2, 0)), min(int(column), max(columns - 2, 0))
-    a, b = row - i, column - j
-    below, beside = min(i + 1, height - 1), offset + stride * min(j + 1, columns - 1)
-    here = offset + stride * j
-    upper = (1.0 - b) * yuyv[i, here, channel] + b * yuyv[i, beside, channel]
-    lower = (1.0 - b) * yuyv[below, here, channel] + b * yuyv[below, beside, channel]
-    return (1.0 - a) * upper + a * lower
+def _colour_at(
+    yuyv: NDArray[np.uint8], x: float, y: float, colours: NDArray[np.float64], k: int
+) -> None:
+    """Bilinear Y, U, V at a place into row k; the pairs' chroma lies between their pixels."""
+    height, width = yuyv.shape[0], yuyv.shape[1]
+    y, x = min(max(y, 0.0), height - 1.0), min(max(x, 0.0), width - 1.0)
+    i, j = min(int(y), max(height - 2, 0)), min(int(x), max(width - 2, 0))
+    below, beside = min(i + 1, height - 1), min(j + 1, width - 1)
+    a, b = y - i, x - j
+    upper = (1.0 - b) * yuyv[i, j, 0] + b * yuyv[i, beside, 0]
+    lower = (1.0 - b) * yuyv[below, j, 0] + b * yuyv[below, beside, 0]
+    colours[k, 0] = (1.0 - a) * upper + a * lower
+    pair = min(max(0.5 * (x - 0.5), 0.0), width // 2 - 1.0)
+    j = min(int(pair), max(width // 2 - 2, 0))
+    b, j, beside = pair - j, 2 * j, 2 * min(j + 1, width // 2 - 1)
+    for c in range(2):
+        upper = (1.0 - b) * yuyv[i, j + c, 1] + b * yuyv[i, beside + c, 1]
+        lower = (1.0 - b) * yuyv[below, j + c, 1] + b * yuyv[below, beside + c, 1]
+        colours[k, 1 + c] = (1.0 - a) * upper + a * lower
 
 
 @njit(cache=True, nogil=True)
@@ -79,18 +84,15 @@ def _profile(
     place: NDArray[np.float64],
     normal: NDArray[np.float64],
     reach: float,
+    step: float,
     depth: float,
     colours: NDArray[np.float64],
 ) -> int:
     """Colours from `reach` inside to `reach` outside; no deeper inside than `depth`."""
-    count = 2 * int(reach / STEP_PX) + 1
+    count = 2 * int(reach / step) + 1
     for k in range(count):
-        s = max((k - count // 2) * STEP_PX, -depth)
-        x, y = place[0] + s * normal[0], place[1] + s * normal[1]
-        pair = (x - 0.5) / 2.0
-        colours[k, 0] = _mix(yuyv, y, x, 1, 0, 0)
-        colours[k, 1] = _mix(yuyv, y, pair, 2, 0, 1)
-        colours[k, 2] = _mix(yuyv, y, pair, 2, 1, 1)
+        s = max((k - count // 2) * step, -depth)
+        _colour_at(yuyv, place[0] + s * normal[0], place[1] + s * normal[1], colours, k)
     return count
 
 
@@ -156,11 +158,11 @@ def _split(scores: NDArray[np.float64], count: int, level: float) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _slope(scores: NDArray[np.float64], count: int, k: int) -> float:
+def _slope(scores: NDArray[np.float64], count: int, k: int, step: float) -> float:
     """Rise per pixel about the step after sample k; 0 where the profile ends too soon."""
     if k < 2 or k > count - 4:
         return 0.0
-    return (scores[k + 3] - scores[k - 2]) / (5.0 * STEP_PX)
+    return (scores[k + 3] - scores[k - 2]) / (5.0 * step)
 
 
 @njit(cache=True, nogil=True)
@@ -170,6 +172,7 @@ def _crossing(
     inner: NDArray[np.float64],
     direction: NDArray[np.float64],
     level: float,
+    step: float,
     scores: NDArray[np.float64],
 ) -> tuple[float, float]:
     """Where a profile is at a level, px from its middle, and its slope; slope 0 if nowhere."""
@@ -178,11 +181,11 @@ def _crossing(
         for c in range(3):
             scores[k] += direction[c] * (colours[k, c] - inner[c])
     k = _split(scores, count, level)
-    slope = _slope(scores, count, k)
+    slope = _slope(scores, count, k, step)
     if slope < SLOPE_MIN or not scores[k] <= level < scores[k + 1]:
         return 0.0, 0.0
     place = k + (level - scores[k]) / (scores[k + 1] - scores[k])
-    return (place - count // 2) * STEP_PX, slope
+    return (place - count // 2) * step, slope
 
 
 @njit(cache=True, nogil=True)
@@ -205,32 +208,39 @@ def _exactly(
 
 
 @njit(cache=True, nogil=True)
-def _measure(
+def measure(
     yuyv: NDArray[np.uint8],
     places: NDArray[np.float64],
     normals: NDArray[np.float64],
+    count: int,
     reach: float,
+    step: float,
     depth: float,
     exact: bool,
     found: NDArray[np.float64],
 ) -> None:
+    """What `measure_edges` says of the first `count` places, into the columns of `found` (n, 4).
+
+    step: px between samples of a profile; coarser ones do where edges are only looked for.
+    """
     height, width = yuyv.shape[0], yuyv.shape[1]
+    reach = min(reach, (SAMPLES_MAX // 2) * step)
     colours, scores = np.empty((SAMPLES_MAX, 3)), np.empty(SAMPLES_MAX)
     plateaus, shares, pairs = np.empty((3, 3)), np.empty(SHARES), np.empty((PAIRS_MAX, 3))
-    for i in range(places.shape[0]):
+    for i in range(count):
         nx, ny = normals[i, 0], normals[i, 1]
         x, y = places[i, 0] + reach * nx, places[i, 1] + reach * ny
         found[i, SIGMA] = np.inf
         found[i, WITHIN] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
         if not found[i, WITHIN]:
             continue
-        count = _profile(yuyv, places[i], normals[i], reach, depth, colours)
-        contrast = _separation(colours, count, plateaus[0], plateaus[1], plateaus[2])
+        samples = _profile(yuyv, places[i], normals[i], reach, step, depth, colours)
+        contrast = _separation(colours, samples, plateaus[0], plateaus[1], plateaus[2])
         if contrast < CONTRAST_MIN:
             continue
         mixture_scores(plateaus[0], plateaus[1], plateaus[2], shares)
         half = shares[SHARES // 2]
-        offset, slope = _crossing(colours, count, plateaus[0], plateaus[2], half, scores)
+        offset, slope = _crossing(colours, samples, plateaus[0], plateaus[2], half, step, scores)
         if slope == 0.0:
             continue
         information = slope * slope
@@ -258,11 +268,13 @@ def measure_edges(
     put each where its pixels say, not only where its profile is half-way.
     """
     found = np.zeros((len(places_px), 4))
-    _measure(
+    measure(
         np.ascontiguousarray(yuyv),
         np.ascontiguousarray(places_px),
         np.ascontiguousarray(normals),
-        min(reach_px, (SAMPLES_MAX // 2) * STEP_PX),
+        len(places_px),
+        reach_px,
+        STEP_PX,
         depth_px,
         exact,
         found,

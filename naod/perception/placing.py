@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-SHARES = 33
+SHARES = 17
 PAIRS_MAX = 160
 ALONG_PX = 1.5
 """How far along the edge pixels are taken."""
@@ -25,23 +25,23 @@ ASIDE_PX = 1.5
 MIXING_MAX_PX = 24.0
 SHIFT_MAX_PX = 2.0
 STEPS = 6
-DELTA_PX = 0.1
 WIDTH_MIN_PX = 0.9
 WIDTH_PRIOR = 1e-3
 """Information that the width is as it seems from the profile, per score variance and px squared."""
 
 
 @njit(cache=True, nogil=True)
-def _score(scores: NDArray[np.float64], gap: float, width: float) -> float:
-    """Predicted score of a pixel whose middle lies `gap` outside the edge."""
+def _score(scores: NDArray[np.float64], gap: float, width: float) -> tuple[float, float]:
+    """Predicted score of a pixel whose middle lies `gap` outside the edge, and its rise per px."""
     share = 0.5 + gap / width
     if share <= 0.0:
-        return 0.0
+        return 0.0, 0.0
     if share >= 1.0:
-        return 1.0
+        return 1.0, 0.0
     place = share * (SHARES - 1)
     k = int(place)
-    return scores[k] + (place - k) * (scores[k + 1] - scores[k])
+    rise = scores[k + 1] - scores[k]
+    return scores[k] + (place - k) * rise, rise * (SHARES - 1) / width
 
 
 @njit(cache=True, nogil=True)
@@ -85,14 +85,6 @@ def _gather(
 
 
 @njit(cache=True, nogil=True)
-def _pair_score(
-    scores: NDArray[np.float64], pair: NDArray[np.float64], shift: float, width: float
-) -> float:
-    a, b = pair[0] - shift, pair[1] - shift
-    return 0.5 * (_score(scores, a, width) + _score(scores, b, width))
-
-
-@njit(cache=True, nogil=True)
 def _improve(
     scores: NDArray[np.float64],
     pairs: NDArray[np.float64],
@@ -106,11 +98,12 @@ def _improve(
     a22 = WIDTH_PRIOR
     for k in range(count):
         pair = pairs[k]
-        gap = pair[2] - _pair_score(scores, pair, shift, width)
-        by_shift = _pair_score(scores, pair, shift + DELTA_PX, width)
-        by_shift = (by_shift - _pair_score(scores, pair, shift - DELTA_PX, width)) / (2 * DELTA_PX)
-        by_width = _pair_score(scores, pair, shift, width + DELTA_PX)
-        by_width = (by_width - _pair_score(scores, pair, shift, width - DELTA_PX)) / (2 * DELTA_PX)
+        a, b = pair[0] - shift, pair[1] - shift
+        first, first_rise = _score(scores, a, width)
+        second, second_rise = _score(scores, b, width)
+        gap = pair[2] - 0.5 * (first + second)
+        by_shift = -0.5 * (first_rise + second_rise)
+        by_width = -0.5 * (first_rise * a + second_rise * b) / width
         a11 += by_shift * by_shift
         a12 += by_shift * by_width
         a22 += by_width * by_width
@@ -156,6 +149,6 @@ def place_edge(
         width = min(max(width + min(max(step[1], -1.0), 1.0), WIDTH_MIN_PX), MIXING_MAX_PX)
         if abs(shift) > SHIFT_MAX_PX + 0.25 * width:
             return 0.0, 0.0
-        if abs(step[0]) < 0.002:
+        if abs(step[0]) < 0.005:
             break
     return shift, information

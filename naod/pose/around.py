@@ -8,12 +8,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.pose.contour import RECTANGLE, VERTICES, outline
+from naod.pose.contour import VERTICES, outline
 from naod.pose.foot import project
 from naod.pose.lens import HEIGHT, WIDTH, focal, to_pixel
 
 CORNER_PX = 2.0
-"""Near a corner of a board there are two edges at once."""
+"""Near a corner there are two edges at once."""
 
 PLACES_MIN = 12
 
@@ -57,43 +57,65 @@ def narrowest(image: NDArray[np.float64], pieces: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def places_around(
-    kind: int,
+def _lengths(
     image: NDArray[np.float64],
+    names: NDArray[np.int64],
+    pieces: int,
+    scale: float,
+    ends: NDArray[np.float64],
+    runs: NDArray[np.float64],
+) -> float:
+    """Fill where each piece ends, px along the outline, and where its edge begins and ends."""
+    total = begun = 0.0
+    first = 0
+    for k in range(pieces):
+        du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
+        total += scale * math.hypot(du, dv)
+        ends[k] = total
+        if k == pieces - 1 or names[k + 1] != names[k]:
+            for i in range(first, k + 1):
+                runs[i, 0], runs[i, 1] = begun, total
+            first, begun = k + 1, total
+    return total
+
+
+@njit(cache=True, nogil=True)
+def places_around(
+    image: NDArray[np.float64],
+    names: NDArray[np.int64],
     pieces: int,
     lens: NDArray[np.float64],
     most: int,
+    apart_px: float,
     places: NDArray[np.float64],
     normals: NDArray[np.float64],
+    edges: NDArray[np.int64],
 ) -> int:
     """Fill places and unit normals outwards, (most, 2) px, evenly around; returns how many.
 
-    A pixel apart at least, and none near a board's corners.
+    `edges` (most,): which edge each is of. At least `apart_px` apart, and none near corners.
     """
-    scale, total = focal(lens), 0.0
-    lengths = np.empty(pieces)
-    for k in range(pieces):
-        du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
-        lengths[k] = scale * math.hypot(du, dv)
-        total += lengths[k]
-    count = int(min(float(most), max(total, float(PLACES_MIN))))
-    made, piece, begin = 0, 0, 0.0
+    ends, runs = np.empty(pieces), np.empty((pieces, 2))
+    total = _lengths(image, names, pieces, focal(lens), ends, runs)
+    count = int(min(float(most), max(total / apart_px, float(PLACES_MIN))))
+    made = piece = 0
     for n in range(count):
         at = (n + 0.5) * total / count
-        while piece < pieces - 1 and at > begin + lengths[piece]:
-            begin += lengths[piece]
+        while piece < pieces - 1 and at > ends[piece]:
             piece += 1
-        inside, length = at - begin, max(lengths[piece], 1e-9)
-        if kind == RECTANGLE and min(inside, length - inside) < CORNER_PX:
+        if min(at - runs[piece, 0], runs[piece, 1] - at) < CORNER_PX:
             continue
+        before = ends[piece - 1] if piece else 0.0
+        length = max(ends[piece] - before, 1e-9)
         du, dv = image[piece + 1, 0] - image[piece, 0], image[piece + 1, 1] - image[piece, 1]
-        u = image[piece, 0] + du * inside / length
-        v = image[piece, 1] + dv * inside / length
+        part = (at - before) / length
+        u, v = image[piece, 0] + du * part, image[piece, 1] + dv * part
         x, y = to_pixel(lens, u, v)
         ahead_x, ahead_y = to_pixel(lens, u + du / length, v + dv / length)
         norm = max(math.hypot(ahead_x - x, ahead_y - y), 1e-12)
         places[made, 0], places[made, 1] = x, y
         normals[made, 0], normals[made, 1] = (ahead_y - y) / norm, (x - ahead_x) / norm
+        edges[made] = names[piece]
         made += 1
     return made
 

@@ -26,6 +26,9 @@ from naod.pose.prior import Prior
 from naod.pose.quadrilateral import quadrilateral
 
 POINTS_MIN = 12
+MOST = 4000
+"""More points than any outline has come from noise, and only take time."""
+
 PLACES = 48
 """Around the outline, where it is asked whether the blob ends there."""
 
@@ -45,13 +48,15 @@ class CoarseFit:
     `T_camera_object`: (4, 4). `misfit_grains2`: mean squared distance of the blob's outline from
     the object's, in squares of `Blob.grain_px`, each cut at 4 grains. `support`: share of the
     object's outline, as far as the picture shows it, where the blob ends too. `area_px`: pixels of
-    the picture the object would cover. `other`: the second reading of a tilt, if there is one.
+    the picture the object would cover. `gaps`: share of the outline where the blob does not end.
+    `other`: the second reading of a tilt, if there is one.
     """
 
     T_camera_object: NDArray[np.float64]
     misfit_grains2: float
     support: float
     area_px: float
+    gaps: float = 0.0
     other: NDArray[np.float64] | None = None
 
 
@@ -66,20 +71,21 @@ def coarse_fit(
     points = outline_points(blob)
     if len(points) < POINTS_MIN:
         return None
-    poses, found = np.empty((READINGS, 3, 4)), np.empty((READINGS, FOUND))
+    poses, found = np.empty((READINGS, 3, 4)), np.empty(FOUND)
     hinted, hint = near is not None, np.zeros((3, 4))
     if near is not None:
         hint[:] = near.T_camera_object[:3]
     box = np.ascontiguousarray(blob.corners_px, dtype=np.float64)
+    boundary = np.ascontiguousarray(blob.boundary_px[:: max(1, len(blob.boundary_px) // MOST)])
     count = _fit(
-        *figures(shape), points, box, blob.grain_px, _sides(blob), lens_of(camera), hint, hinted,
-        poses, found,
+        *figures(shape), points, boundary, box, blob.grain_px, _sides(blob), lens_of(camera),
+        hint, hinted, poses, found,
     )  # fmt: skip
     if count == 0:
         return None
     readings = [np.vstack([pose, _LAST_ROW]) for pose in poses[:count]]
-    cost, support, area = (float(value) for value in found[0])
-    return CoarseFit(readings[0], cost, support, area, readings[1] if count > 1 else None)
+    cost, support, area, gaps = (float(value) for value in found)
+    return CoarseFit(readings[0], cost, support, area, gaps, readings[1] if count > 1 else None)
 
 
 def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
@@ -95,8 +101,8 @@ def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
     return near_hull(few, hull, 1.5 * blob.grain_px, most)
 
 
-COST, SUPPORT, AREA = range(3)
-FOUND = 3
+COST, SUPPORT, AREA, GAPS = range(4)
+FOUND = 4
 _LAST_ROW = np.array([[0.0, 0.0, 0.0, 1.0]])
 _SIDES = ("left", "top", "right", "bottom")
 
@@ -139,16 +145,15 @@ def _guess(
     lens: NDArray[np.float64],
     guesses: NDArray[np.float64],
 ) -> int:
-    corners, cut = np.empty((4, 2)), np.zeros(4, dtype=np.bool_)
+    corners, four, cut = np.empty((4, 2)), np.empty((4, 2)), np.zeros(4, dtype=np.bool_)
     from_pixels(lens, box, corners)
     _cut(box, grain, sides, lens, cut)
     if kind == CYLINDER:
         return cylinder_guesses(half_width, half_height, corners, cut, guesses)
     count = 0
-    if not sides.any() and quadrilateral(points, corners):
-        count = rectangle_guesses(half_width, half_height, corners, guesses)
+    if not sides.any() and quadrilateral(points, corners, four):
+        count = rectangle_guesses(half_width, half_height, four, guesses)
     if count == 0:
-        from_pixels(lens, box, corners)
         count = cut_rectangle_guesses(half_width, half_height, corners, cut, guesses)
     return count
 
@@ -159,7 +164,7 @@ def _judge(
     half_width: float,
     half_height: float,
     T: NDArray[np.float64],
-    points_px: NDArray[np.float64],
+    boundary: NDArray[np.float64],
     points: NDArray[np.float64],
     grain_px: float,
     lens: NDArray[np.float64],
@@ -168,15 +173,17 @@ def _judge(
     """Cost, support and area of a pose into `found`."""
     image, names = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
     places, normals = np.empty((PLACES, 2)), np.empty((PLACES, 2))
+    edges = np.empty(PLACES, dtype=np.int64)
     pieces = seen_outline(kind, half_width, half_height, T, image, names)
-    count = places_around(kind, image, pieces, lens, PLACES, places, normals)
+    count = places_around(image, names, pieces, lens, PLACES, 1.0, places, normals, edges)
     residuals = residuals_of(kind, half_width, half_height, T, points)
     grain, near, total = grain_px / focal(lens), 0, 0.0
     for k in range(residuals.size):
         gap = min(abs(residuals[k]) / grain, 4.0)
         near += gap < FITS_GRAINS
         total += gap * gap
-    gaps = lonely_share(places, count, points_px, lens, grain_px)
+    gaps = lonely_share(places, count, boundary, lens, grain_px)
+    found[GAPS] = gaps
     found[COST] = total / residuals.size
     found[SUPPORT] = near / residuals.size * (1.0 - gaps)
     found[AREA] = visible_area(image, pieces, lens)
@@ -188,6 +195,7 @@ def _fit(
     half_width: float,
     half_height: float,
     points_px: NDArray[np.float64],
+    boundary: NDArray[np.float64],
     box: NDArray[np.float64],
     grain_px: float,
     sides: NDArray[np.bool_],
@@ -206,11 +214,9 @@ def _fit(
         guesses[0] = hint
         count = explore(kind, half_width, half_height, points, guesses, 1, grain, poses)
     for attempt in range(2):
-        for k in range(count):
-            _judge(
-                kind, half_width, half_height, poses[k], points_px, points, grain_px, lens, found[k]
-            )
-        explained = found[0, COST] < EXPLAINS_GRAINS2 and found[0, SUPPORT] > EXPLAINS_SUPPORT
+        if count > 0:
+            _judge(kind, half_width, half_height, poses[0], boundary, points, grain_px, lens, found)
+        explained = found[COST] < EXPLAINS_GRAINS2 and found[SUPPORT] > EXPLAINS_SUPPORT
         if attempt == 1 or (count > 0 and explained):
             break
         start = 1 if hinted else 0

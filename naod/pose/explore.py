@@ -15,11 +15,14 @@ from naod.pose.guesses import face
 READINGS = 2
 """A tilt towards the viewer and one away: more readings than these do not differ."""
 
-POINTS, FEW_POINTS = 72, 30
+POINTS, FEW_POINTS = 48, 24
 STEPS, FEW_STEPS = 6, 4
 SETTLED = 1e-3
 CUT_GRAINS = 4.0
 DISTINCT_RAD = 0.15
+HOPELESS, HOPELESS_GRAINS2 = 4.0, 0.1
+"""A guess that comes out so many times as bad as another, and a bit, is not followed."""
+
 DEPTH_LEAST_M = 0.05
 
 
@@ -137,9 +140,10 @@ def explore(
     few, costs = points[:: max(1, points.shape[0] // FEW_POINTS)].copy(), np.empty(count)
     for k in range(count):
         costs[k] = _descended(kind, half_width, half_height, guesses[k], few, grain, FEW_STEPS)
-    ends, found = np.empty(READINGS), 0
-    for k in np.argsort(costs):
-        if found == READINGS or not math.isfinite(costs[k]):
+    order, ends, found = np.argsort(costs), np.empty(READINGS), 0
+    best = order[0]
+    for k in order:
+        if found == READINGS or not costs[k] < HOPELESS * costs[best] + HOPELESS_GRAINS2:
             break
         if found == 1 and angle_between(guesses[k], poses[0]) < DISTINCT_RAD:
             continue

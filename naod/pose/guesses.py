@@ -74,12 +74,15 @@ def face(axis: NDArray[np.float64], centre: NDArray[np.float64], T: NDArray[np.f
 
 @njit(cache=True, nogil=True)
 def mirror(T: NDArray[np.float64], out: NDArray[np.float64]) -> None:
-    """The other reading of a flat thing (3, 4): its tilt turned over about the line of sight."""
+    """The other reading of a flat thing (3, 4): seen from afar, what points away points here.
+
+    Both axes in the plane are reflected along the line of sight, which shows no difference there.
+    """
     t = T[:, 3].copy()
-    forward, x = _unit(t), T[:, 0].copy()
-    normal = 2.0 * _dot(T[:, 2], forward) * forward - T[:, 2]
-    x = _unit(x - _dot(x, normal) * normal)
-    put(x, _cross(normal, x), normal, t, out)
+    forward = _unit(t)
+    x = T[:, 0] - 2.0 * _dot(T[:, 0], forward) * forward
+    y = T[:, 1] - 2.0 * _dot(T[:, 1], forward) * forward
+    put(x, y, _cross(x, y), t, out)
 
 
 @njit(cache=True, nogil=True)

@@ -9,45 +9,28 @@ from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
 from naod.perception.blob import Blob, blob_of_mask
+from naod.pose.coarse import CoarseFit, coarse_fit, outline_points
 from naod.pose.contour import corners_px
-from naod.pose.objects import ObjectShape
-from naod.pose.outline import outline_of
+from naod.pose.guesses import tilted
+from naod.pose.objects import Cylinder, ObjectShape
 from naod.pose.paper import paper_pose
-from naod.pose.result import Estimator, ObjectPose
-from naod.pose.search import (
-    Reading,
-    first_readings,
-    next_readings,
-    on_picture,
-    seen_on_picture,
-)
-from naod.pose.uncertainty import EdgeNoise, parts, point_sigma
+from naod.pose.picture import misfit_gap, see
+from naod.pose.prior import Prior
+from naod.pose.reading import Reading, read_points
+from naod.pose.result import EDGES, Estimator, ObjectPose
+from naod.pose.uncertainty import EdgeNoise, covariance
 
-PICTURE_NOISE = EdgeNoise(floor_px=0.05, common_px=0.1, edge_px=0.05, per_point=3.0, fits_px=1.0)
-"""A camera whose levels follow another curve than sRGB's shows everything a tenth of a pixel wider
-or narrower; rendered pictures do not."""
+PICTURE_NOISE = EdgeNoise(floor_px=0.03, common_px=0.04, edge_px=0.045, per_point=2.0, fits_px=1.0)
 
 MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0, fits_px=2.0)
 """Somebody else's mask: half a pixel to and fro is a matter of how it was drawn."""
 
-WIDE = 0.2
-"""How far from a blob's outline edges are looked for, of its width: shading hides as much of a can
-from its colour."""
-
-NEAR_PX = 4.0
-"""How far from a good outline: the step and its plateaus."""
-
-NEAR_RISES = 1.2
-"""The same in widths of a blurred step."""
-
-SHARP_RISE_PX = 2.5
-"""Width of a step without motion, as bilinear samples of shared chroma show it."""
-
 SUPPORT_MIN = 0.7
 """Share of the outline that must be there: about three edges of four."""
 
-OUTLIER = 3.0
-"""Standard deviations beyond which a residual says no more than that it does not fit."""
+MASK_POINTS = 1200
+NO_DOUBT = 50.0
+LEVEL_RAD = 0.01
 
 
 def locate(
@@ -56,41 +39,23 @@ def locate(
     shape: ObjectShape,
     camera: PinholeCamera,
     estimator: Estimator = "exact",
+    near: Prior | None = None,
+    noise: EdgeNoise = PICTURE_NOISE,
 ) -> ObjectPose | None:
     """The pose of the object that a blob shows, its edges found again at full resolution.
 
-    yuyv: (H, W, 2) uint8, the whole picture, of the camera's size. None when the blob's outline is
-    not that of the shape.
+    yuyv: (H, W, 2) uint8, the whole picture, of the camera's size. near: where the object is
+    expected, tried before anything else. None when the blob's outline is not that of the shape.
     """
-    coarse = first_readings(outline_of(blob), shape, camera)
-    seen = _refined(coarse, yuyv, shape, camera)
-    on_edges = _result(seen, _picture_noise(seen), blob, shape, camera, estimator)
-    if on_edges is not None:
-        return on_edges
-    return _result(coarse, _coarse_noise(blob), blob, shape, camera, estimator)
-
-
-def _refined(
-    coarse: list[Reading], yuyv: NDArray[np.uint8], shape: ObjectShape, camera: PinholeCamera
-) -> list[Reading]:
-    """Edges looked for widely, all readings of those, and each fitted to the edges close by."""
-    if not coarse:
-        return []
-    wide = max(2.5 * coarse[0].outline.grain_px, NEAR_PX)
-    outline = seen_on_picture(coarse[0], yuyv, shape, camera, wide, WIDE)
-    if outline is None:
-        return []
-    found = next_readings(outline, shape, camera, coarse)
-    near = max(NEAR_PX, NEAR_RISES * outline.rise_px)
-    for exact in (False, True):
-        closer = (on_picture(reading, yuyv, shape, camera, near, exact) for reading in found)
-        found = [reading for reading in closer if reading is not None]
-    return found
-
-
-def _picture_noise(found: list[Reading]) -> EdgeNoise:
-    blur = max((reading.outline.rise_px / SHARP_RISE_PX for reading in found), default=1.0)
-    return PICTURE_NOISE.blurred(max(blur, 1.0))
+    coarse = coarse_fit(blob, shape, camera, near)
+    if coarse is None:
+        return None
+    seen = see(yuyv, coarse, blob.grain_px, shape, camera, noise)
+    if seen is None or seen.reading.support < SUPPORT_MIN:
+        return _on_outline(coarse, blob, _coarse_noise(blob), shape, camera, estimator)
+    total = _with_doubt(seen.covariance, seen.reading, seen.other, seen.gap / noise.per_point)
+    edges = tuple(edge for edge, is_seen in zip(EDGES, seen.edges_seen, strict=True) if is_seen)
+    return _pose(seen.reading, total, shape, camera, estimator, blob.clipped, edges, seen.blur_px)
 
 
 def locate_mask(
@@ -103,8 +68,10 @@ def locate_mask(
     blob = blob_of_mask(mask)
     if blob is None:
         return None
-    found = first_readings(outline_of(blob), shape, camera)
-    return _result(found, MASK_NOISE, blob, shape, camera, estimator)
+    coarse = coarse_fit(blob, shape, camera)
+    if coarse is None:
+        return None
+    return _on_outline(coarse, blob, MASK_NOISE, shape, camera, estimator)
 
 
 def _coarse_noise(blob: Blob) -> EdgeNoise:
@@ -112,46 +79,89 @@ def _coarse_noise(blob: Blob) -> EdgeNoise:
     return EdgeNoise(0.3 * grain, 0.25 * grain, 0.25 * grain, 3.0, 0.75 * grain)
 
 
-def _result(
-    found: list[Reading],
-    noise: EdgeNoise,
+def _on_outline(
+    coarse: CoarseFit,
     blob: Blob,
+    noise: EdgeNoise,
     shape: ObjectShape,
     camera: PinholeCamera,
     estimator: Estimator,
 ) -> ObjectPose | None:
-    found = [reading for reading in found if reading.support(noise.fits_px) >= SUPPORT_MIN]
+    """The pose by a blob's own outline."""
+    points, floor = outline_points(blob, MASK_POINTS), 0.7 * blob.grain_px
+    found = [
+        reading
+        for start in _starts(coarse, shape)
+        if (reading := read_points(points, start, shape, camera, floor, noise.fits_px, coarse.gaps))
+        and reading.support >= SUPPORT_MIN
+    ]
     if not found:
         return None
-    sigma_px = min(point_sigma(reading.fit, noise) for reading in found)
-    found = sorted(found, key=lambda reading: misfit(reading, sigma_px))
     best = found[0]
-    scattered, common = parts(best, shape, noise)
-    total = scattered + common
+    for reading in found[1:]:
+        if _gap(best, reading) < 0.0:
+            best = reading
+    total = covariance(best, shape, noise)
+    for reading in found:
+        if reading is not best:
+            gap = _gap(best, reading) / noise.per_point
+            total = _with_doubt(total, best, reading.fit.T_camera_object, gap)
+    near = np.bincount(best.fit.edges[np.abs(best.fit.residuals) < noise.fits_px], minlength=4)
+    edges = tuple(edge for edge, count in zip(EDGES, near, strict=True) if count > 0)
+    return _pose(best, total, shape, camera, estimator, blob.clipped, edges, 0.0)
+
+
+def _starts(coarse: CoarseFit, shape: ObjectShape) -> list[NDArray[np.float64]]:
+    """A coarse fit's readings, and a can seen level between two tilts that hardly differ."""
+    starts = [coarse.T_camera_object]
+    if coarse.other is not None:
+        starts.append(coarse.other)
+    if isinstance(shape, Cylinder):
+        level = coarse.T_camera_object.copy()
+        tilted(np.ascontiguousarray(coarse.T_camera_object[:3]), LEVEL_RAD, level[:3])
+        starts.append(level)
+    return starts
+
+
+def _gap(best: Reading, other: Reading) -> float:
+    return float(misfit_gap(best.fit.residuals, other.fit.residuals, best.trust))
+
+
+def _pose(
+    reading: Reading,
+    total: NDArray[np.float64],
+    shape: ObjectShape,
+    camera: PinholeCamera,
+    estimator: Estimator,
+    clipped: tuple[str, ...],
+    edges_seen: tuple[str, ...],
+    blur_px: float,
+) -> ObjectPose | None:
+    T = reading.fit.T_camera_object
+    corners = corners_px(shape, T, camera)
     if estimator == "paper":
-        return paper_pose(best, total, shape, camera, blob.clipped)
-    for other in found[1:]:
-        gap = (misfit(other, sigma_px) - misfit(best, sigma_px)) / noise.per_point
-        total = _with_doubt(total, best, other, gap)
-    T = best.fit.T_camera_object
-    return ObjectPose(
-        T, total, corners_px(shape, T, camera), "exact", blob.clipped, total - scattered
-    )
-
-
-def misfit(reading: Reading, sigma_px: float) -> float:
-    """Squared residuals over their variance, an outlier or an edge not seen counting OUTLIER^2."""
-    ratio = np.minimum(np.abs(reading.fit.residuals) / sigma_px, OUTLIER)
-    seen = float((ratio**2).sum())
-    return seen + OUTLIER**2 * reading.outline.missed
+        printed = paper_pose(reading, shape, camera)
+        if printed is None:
+            return None
+        # the printed formulas' own error counts as one standard deviation
+        total = _with_difference(total, 1.0, printed[0], T)
+        T, corners = printed
+    return ObjectPose(T, total, corners, estimator, clipped, edges_seen, blur_px, reading.support)
 
 
 def _with_doubt(
-    total: NDArray[np.float64], best: Reading, other: Reading, gap: float
+    total: NDArray[np.float64], best: Reading, other: NDArray[np.float64] | None, gap: float
 ) -> NDArray[np.float64]:
-    """Covariance of a mixture: the other reading counts by how little worse it fits."""
-    share = 1.0 / (1.0 + math.exp(min(0.5 * gap, 50.0)))
-    T, T_other = best.fit.T_camera_object, other.fit.T_camera_object
+    """Covariance of a mixture: the other reading (4, 4) counts by how little worse it fits."""
+    if other is None or gap > NO_DOUBT:
+        return total
+    share = 1.0 / (1.0 + math.exp(0.5 * gap))
+    return _with_difference(total, share, other, best.fit.T_camera_object)
+
+
+def _with_difference(
+    total: NDArray[np.float64], share: float, T_other: NDArray[np.float64], T: NDArray[np.float64]
+) -> NDArray[np.float64]:
     difference = np.append(T_other[:3, 3] - T[:3, 3], _rotation_vector(T_other, T))
     return total + share * np.outer(difference, difference)
 

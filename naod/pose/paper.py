@@ -9,26 +9,20 @@ from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
 from naod.perception.blob import oriented_box
-from naod.pose.box import line_through
 from naod.pose.contour import BOTTOM, LEFT, RIGHT, TOP, outline_in_camera
 from naod.pose.frames import pose
 from naod.pose.objects import Cylinder, ObjectShape, Rectangle
-from naod.pose.result import ObjectPose
-from naod.pose.search import Reading
+from naod.pose.reading import Reading
 
 Point = NDArray[np.float64]
 
 
 def paper_pose(
-    reading: Reading,
-    covariance: NDArray[np.float64],
-    shape: ObjectShape,
-    camera: PinholeCamera,
-    clipped: tuple[str, ...],
-) -> ObjectPose | None:
-    """Pose from the box corners G, H, J, K; None where one of a rectangle's edges is not seen.
+    reading: Reading, shape: ObjectShape, camera: PinholeCamera
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Pose (4, 4) and corners (4, 2) px from the box corners G, H, J, K.
 
-    The covariance is that of the edges; the printed formulas' bias is not in it.
+    None where one of a rectangle's edges is not seen.
     """
     corners = box_corners(reading, shape, camera)
     if corners is None:
@@ -38,8 +32,7 @@ def paper_pose(
         if isinstance(shape, Cylinder)
         else rectangle_as_printed(corners, shape)
     )
-    seen = camera.project(np.column_stack([corners, np.ones(4)]))
-    return ObjectPose(T, covariance, seen, "paper", clipped)
+    return T, camera.project(np.column_stack([corners, np.ones(4)]))
 
 
 def box_corners(
@@ -57,7 +50,7 @@ def box_corners(
         up = ends[0, :2] / ends[0, 2] - ends[1, :2] / ends[1, 2]
         return oriented_box(points[:, :2] / points[:, 2:], up)
     sound = reading.fit.weights > 0.3
-    points, edges = camera.normalised(reading.outline.points_px)[sound], reading.fit.edges[sound]
+    points, edges = camera.normalised(reading.points_px)[sound], reading.fit.edges[sound]
     lines = [line_through(points[edges == edge]) for edge in (TOP, RIGHT, BOTTOM, LEFT)]
     corners = []
     for k in range(4):
@@ -110,3 +103,17 @@ def _axes(right: Point, up: Point) -> NDArray[np.float64]:
     a = np.cross(H, V)
     left, _, out = np.linalg.svd(np.column_stack([H, V, a / np.linalg.norm(a)]))
     return left @ np.diag([1.0, 1.0, np.linalg.det(left @ out)]) @ out
+
+
+def line_through(points: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """(3,) a, b, c with a x + b y + c = 0 and a^2 + b^2 = 1, least squares across the line.
+
+    None for fewer than two points (n, 2).
+    """
+    if len(points) < 2:
+        return None
+    mean = points.mean(axis=0)
+    x, y = (points - mean).T
+    angle = 0.5 * math.atan2(2.0 * float(x @ y), float(x @ x - y @ y))
+    normal = np.array([-math.sin(angle), math.cos(angle)])
+    return np.append(normal, -normal @ mean)

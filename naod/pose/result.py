@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Estimator = Literal["exact", "paper"]
+EDGES = ("top", "right", "bottom", "left")
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +19,8 @@ class ObjectPose:
     T_camera_object: (4, 4). covariance: (6, 6) of (translation in m, rotation vector in rad), both
     along the camera's axes, the rotation about the object's origin. corners_px: (4, 2), top left,
     top right, bottom right, bottom left as seen. clipped: sides of the picture that cut the object.
-    common: (6, 6), the part of the covariance that pictures from one place share; None if unknown.
+    edges_seen: those of EDGES of which at least half was found. blur_px: width of the motion blur
+    as the edges show it, 0 where they are sharp. support: share of the outline that was found.
     """
 
     T_camera_object: NDArray[np.float64]
@@ -26,7 +28,9 @@ class ObjectPose:
     corners_px: NDArray[np.float64]
     estimator: Estimator
     clipped: tuple[str, ...] = ()
-    common: NDArray[np.float64] | None = None
+    edges_seen: tuple[str, ...] = EDGES
+    blur_px: float = 0.0
+    support: float = 1.0
 
     @property
     def sigma_m(self) -> NDArray[np.float64]:

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from naod.pose.fit import Fit
-from naod.pose.objects import Cylinder, ObjectShape
-from naod.pose.search import Reading
+from naod.pose.contour import CYLINDER, figures
+from naod.pose.objects import ObjectShape
+from naod.pose.reading import Reading
 
-VAGUE = np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+VAGUE = 1.0
 """Information there is without looking: to a metre and a radian."""
 
 WEIGHTED = 1.27
 """Variance of an estimate with Geman-McClure weights at OUTLIER deviations of normal noise, over
 what the weighted residuals give as if the weights had been known beforehand."""
 
-BLOCKS = 24
-BLOCKS_MIN = 8
+BLOCK, BLOCKS_MIN = 5, 8
 OUTLYING = 25.0
+EXPECTED_BLOCKS = 10.0
+"""Stretches whose agreement is taken for granted: a few of them alone say little."""
+
+DEGREES = 6.0
+
+FLOOR, COMMON, EDGE, PER_POINT = range(4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,73 +45,115 @@ class EdgeNoise:
     per_point: float
     fits_px: float
 
-    def blurred(self, factor: float) -> EdgeNoise:
-        """The same where steps are so many times as wide: more neighbours err together.
-
-        Blur takes nothing from where an edge is on the whole, since it is symmetric.
-        """
-        return replace(self, per_point=self.per_point * factor, fits_px=self.fits_px * factor)
+    @property
+    def figures(self) -> NDArray[np.float64]:
+        """(4,) as the kernel takes them."""
+        return np.array([self.floor_px, self.common_px, self.edge_px, self.per_point])
 
 
-def point_sigma(fit: Fit, noise: EdgeNoise) -> float:
-    """Standard deviation of one independent edge point, from the residuals, in pixels."""
-    spare = max(float(fit.weights.sum()) - 6.0, 1.0)
-    variance = WEIGHTED * float((fit.weights * fit.residuals**2).sum()) / spare
-    return max(noise.floor_px, math.sqrt(variance))
+@njit(cache=True, nogil=True)
+def point_sigma(
+    residuals: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    trust: NDArray[np.float64],
+    floor: float,
+) -> float:
+    """Standard deviation of an edge point of full trust, from residuals (n,), in their unit.
+
+    weights: (n,) after down-weighting outliers. trust: (n,) as the points come.
+    """
+    squares = total = 0.0
+    for i in range(residuals.size):
+        squares += weights[i] * trust[i] * residuals[i] * residuals[i]
+        total += weights[i]
+    return max(floor, math.sqrt(WEIGHTED * squares / max(total - DEGREES, 1.0)))
 
 
-def misfit_ratio(reading: Reading, noise: EdgeNoise) -> float:
+@njit(cache=True, nogil=True)
+def misfit_ratio(
+    residuals: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    trust: NDArray[np.float64],
+    sigma: float,
+) -> float:
     """How much more the outline deviates in whole stretches than its points' noise explains.
 
-    1 for a shape that is there as described; more for one that is not quite it, or is partly
-    covered. Birge's ratio over up to BLOCKS stretches, each counted up to OUTLYING.
+    About 1 for a shape that is there as described; more for one that is not quite it, or is partly
+    covered. Birge's ratio over stretches of BLOCK points (in order around the outline), each
+    counted up to OUTLYING.
     """
-    fit, points = reading.fit, reading.outline.points_px
-    x, y = (points - points.mean(axis=0)).T
-    around = fit.residuals[np.argsort(np.arctan2(y, x))]
-    count = min(BLOCKS, max(BLOCKS_MIN, len(around) // 4))
-    blocks = np.array_split(around, count)
-    middles = np.array([np.median(block) for block in blocks])
-    sizes = np.array([len(block) for block in blocks])
-    scatter = np.abs(around - np.repeat(middles, sizes))
-    sigma = max(noise.floor_px, 1.4826 * float(np.median(scatter)))
-    # a median scatters by a quarter more than a mean
-    squares = middles**2 * sizes / (1.57 * sigma**2 * noise.per_point)
-    return max(1.0, float(np.minimum(squares, OUTLYING).sum()) / (count - 6))
+    n = residuals.size
+    blocks = max(BLOCKS_MIN, n // BLOCK)
+    total = EXPECTED_BLOCKS
+    for k in range(blocks):
+        mean = spread = 0.0
+        for i in range(k * n // blocks, (k + 1) * n // blocks):
+            mean += weights[i] * math.sqrt(trust[i]) * residuals[i] / sigma
+            spread += weights[i] * weights[i]
+        if spread > 0.0:
+            total += min(mean * mean / spread, OUTLYING)
+    return max(total / (EXPECTED_BLOCKS + blocks - DEGREES), 1.0)
+
+
+@njit(cache=True, nogil=True)
+def _add_shared(
+    inverse: NDArray[np.float64],
+    pull: NDArray[np.float64],
+    sigma: float,
+    total: NDArray[np.float64],
+) -> None:
+    """What an offset common to some points does to the pose; pull (6,): theirs together."""
+    response = inverse @ pull
+    for i in range(6):
+        for j in range(6):
+            total[i, j] += sigma * sigma * response[i] * response[j]
+
+
+@njit(cache=True, nogil=True)
+def stated(
+    kind: int,
+    T: NDArray[np.float64],
+    residuals: NDArray[np.float64],
+    jacobian: NDArray[np.float64],
+    edges: NDArray[np.int64],
+    weights: NDArray[np.float64],
+    trust: NDArray[np.float64],
+    noise: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """(6, 6) of translation (m) and rotation (rad) along the camera's axes, of a pose (3, 4).
+
+    residuals, jacobian: px. noise: (4,) `EdgeNoise.figures`. The turn of a cylinder about its own
+    axis is fixed by convention and has no variance.
+    """
+    sigma = point_sigma(residuals, weights, trust, noise[FLOOR])
+    information, pulls, pull = np.zeros((6, 6)), np.zeros((4, 6)), np.zeros(6)
+    for i in range(residuals.size):
+        weight = weights[i] * trust[i] / (sigma * sigma)
+        for j in range(6):
+            pulls[edges[i], j] += weight * jacobian[i, j]
+            for k in range(6):
+                information[j, k] += weight * jacobian[i, j] * jacobian[i, k]
+    stiff = 1e6 * (information[3, 3] + information[4, 4] + information[5, 5])
+    for j in range(6):
+        information[j, j] += VAGUE
+        if kind == CYLINDER and j >= 3:
+            for k in range(3):
+                information[j, 3 + k] += stiff * T[j - 3, 1] * T[k, 1]
+    inverse = np.linalg.inv(information)
+    ratio = noise[PER_POINT] * misfit_ratio(residuals, weights, trust, sigma)
+    total = 0.5 * ratio * (inverse + inverse.T)
+    for edge in range(4):
+        _add_shared(inverse, pulls[edge], noise[EDGE], total)
+        pull += pulls[edge]
+    _add_shared(inverse, pull, noise[COMMON], total)
+    return total
 
 
 def covariance(reading: Reading, shape: ObjectShape, noise: EdgeNoise) -> NDArray[np.float64]:
-    """(6, 6) of translation (m) and rotation (rad) along the camera's axes."""
-    scattered, common = parts(reading, shape, noise)
-    return scattered + common
-
-
-def parts(
-    reading: Reading, shape: ObjectShape, noise: EdgeNoise
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The covariance in two parts: of the points' noise, new in each picture, and of whole edges.
-
-    The second is the same in every picture from one place: it does not average out. The turn of a
-    cylinder about its own axis is fixed by convention and has no variance.
-    """
+    """`stated` of a reading."""
     fit = reading.fit
-    weights = fit.weights * reading.outline.trust
-    weighted = fit.jacobian * (weights / (point_sigma(fit, noise) ** 2 * noise.per_point))[:, None]
-    information = weighted.T @ fit.jacobian + VAGUE
-    if isinstance(shape, Cylinder):
-        axis = np.append(np.zeros(3), fit.T_camera_object[:3, 1])
-        information += 1e6 * np.trace(information[3:, 3:]) * np.outer(axis, axis)
-    inverse = np.linalg.inv(information)
-    scattered = inverse * misfit_ratio(reading, noise)
-    common = _shared(inverse, weighted, noise.common_px)
-    for edge in np.unique(fit.edges):
-        common += _shared(inverse, weighted[fit.edges == edge], noise.edge_px)
-    return (scattered + scattered.T) / 2.0, (common + common.T) / 2.0
-
-
-def _shared(
-    inverse: NDArray[np.float64], weighted: NDArray[np.float64], sigma_px: float
-) -> NDArray[np.float64]:
-    """What an offset common to some points does to the pose."""
-    response = inverse @ weighted.sum(axis=0)
-    return np.outer(response, response) * sigma_px**2
+    T = np.ascontiguousarray(fit.T_camera_object[:3])
+    return stated(
+        figures(shape)[0], T, fit.residuals, fit.jacobian, fit.edges, fit.weights, reading.trust,
+        noise.figures,
+    )  # fmt: skip

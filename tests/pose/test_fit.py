@@ -1,7 +1,9 @@
 """Outline, residuals, their derivatives and the closed forms, each by another way."""
 
+import cv2
 import numpy as np
 import pytest
+from closed_forms import cylinder_from_sides
 from edge_places import edge_places
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -9,10 +11,9 @@ from raster import BOARD, CAMERA, CAN, board_pose, can_pose, meets, towards_came
 
 from naod.geometry.linear import solve_symmetric
 from naod.geometry.transforms import rot_x, rot_y, rot_z, transform
-from naod.pose.contour import figures, outline_in_camera, outline_px
-from naod.pose.cylinder_starts import cylinder_from_sides
+from naod.pose.contour import ARC, figures, outline_in_camera, outline_px
 from naod.pose.fit import compare, fit_outline
-from naod.pose.rectangle_starts import mirrored, rectangle_from_corners
+from naod.pose.guesses import mirror, rectangle_from_quadrilateral
 
 LEVEL = can_pose((0.0, 0.0, 0.7), 0.0)
 POSES = [
@@ -114,17 +115,47 @@ def test_closed_form_of_a_cylinder_from_its_sides(tilt, roll, x, y, distance):
     assert np.allclose(found, T, atol=1e-9 * max(1.0, 1.0 / distance))
 
 
-def test_homography_of_a_rectangle_and_its_mirror_reading():
+@pytest.mark.parametrize(("shape", "T"), POSES[:2])
+def test_the_fitted_can_is_the_closed_form_of_its_own_outline(shape, T):
+    points, _ = outline_in_camera(shape, T)
+    fit = fit_outline(shape, T, points[:, :2] / points[:, 2:], 600.0, 0.3)
+    found, _ = outline_in_camera(shape, fit.T_camera_object)
+    # the sides are the planes through the camera and the two straight pieces
+    right = np.cross(found[ARC], found[ARC + 1])
+    left = np.cross(found[2 * ARC + 1], found[0])
+    centre, axis = fit.T_camera_object[:3, 3], fit.T_camera_object[:3, 1]
+    ends = [centre + s * shape.height_m / 2.0 * axis for s in (1.0, -1.0)]
+    sides = [side * -np.sign(side @ centre) for side in (left, right)]
+    closed = cylinder_from_sides(*sides, tuple(end[:2] / end[2] for end in ends), shape)
+    assert np.allclose(closed, fit.T_camera_object, atol=1e-6)
+
+
+@pytest.mark.parametrize("turn", [0, 1, 2, 3])
+def test_homography_of_a_rectangle_against_pnp(turn):
     T = board_pose((0.1, -0.05, 0.9), 0.4, 0.5, -0.2)
     points, _ = outline_in_camera(BOARD, T)
     corners = (points[:, :2] / points[:, 2:])[:4]
-    assert np.allclose(rectangle_from_corners(corners, BOARD), T, atol=1e-9)
-    other = mirrored(T)
-    forward = T[:3, 3] / np.linalg.norm(T[:3, 3])
-    assert np.isclose(other[:3, 2] @ forward, T[:3, 2] @ forward)
-    assert np.allclose(other[:3, :3] @ other[:3, :3].T, np.eye(3))
-    assert np.linalg.det(other[:3, :3]) > 0.0
-    assert rectangle_from_corners(corners[::-1], BOARD) is None
+    found = np.empty((3, 4))
+    half = BOARD.width_m / 2.0, BOARD.height_m / 2.0
+    assert rectangle_from_quadrilateral(*half, np.roll(corners, turn, axis=0), turn, found)
+    assert np.allclose(found, T[:3], atol=1e-9)
+    on_board = np.array([(-1, 1, 0), (1, 1, 0), (1, -1, 0), (-1, -1, 0)]) * (*half, 0.0)
+    _, turns, t = cv2.solvePnP(on_board, corners, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE)
+    assert np.allclose(found[:, 3], t[:, 0], atol=1e-6)
+    assert np.allclose(found[:, :3], cv2.Rodrigues(turns)[0], atol=1e-5)
+    assert not rectangle_from_quadrilateral(*half, corners[::-1].copy(), 0, found)
+
+
+def test_the_mirror_reading_looks_the_same_from_afar():
+    T = board_pose((2.0, -1.0, 200.0), 0.4, 0.5, -0.2)
+    other = np.empty((3, 4))
+    mirror(np.ascontiguousarray(T[:3]), other)
+    assert np.allclose(other[:, :3] @ other[:, :3].T, np.eye(3))
+    assert np.linalg.det(other[:, :3]) > 0.0
+    assert other[:, 2] @ T[:3, 2] < 0.9
+    outlines = [outline_in_camera(BOARD, np.vstack([P[:3], (0, 0, 0, 1)]))[0] for P in (T, other)]
+    seen = [points[:, :2] / points[:, 2:] for points in outlines]
+    assert np.abs(seen[0] - seen[1]).max() < 0.002 * np.ptp(seen[0], axis=0).max()
 
 
 def test_small_symmetric_systems_equal_numpys():
