@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hal.lola.sensors import Sensors
-from hal.nao.head_limits import HEAD_SPEED_MAX_RAD_S, YAW_MAX_RAD, pitch_range_rad
+from hal.nao.ankle_limits import left_roll_range_rad, right_roll_range_rad
+from hal.nao.head_limits import HEAD_SPEED_MAX_RAD_S, pitch_range_rad
 from hal.nao.joints import JOINT_INDEX, JOINTS, LOWER_RAD, UPPER_RAD
 
 Array = NDArray[np.float64]
@@ -19,6 +21,15 @@ LET_GO_PER_S = 4.0
 """Of full stiffness; letting go is for a robot that falls."""
 
 _YAW, _PITCH = JOINT_INDEX["HeadYaw"], JOINT_INDEX["HeadPitch"]
+
+_COUPLED: tuple[tuple[int, int, Callable[[float], tuple[float, float]]], ...] = (
+    (_YAW, _PITCH, pitch_range_rad),
+    (JOINT_INDEX["LAnklePitch"], JOINT_INDEX["LAnkleRoll"], left_roll_range_rad),
+    (JOINT_INDEX["RAnklePitch"], JOINT_INDEX["RAnkleRoll"], right_roll_range_rad),
+)
+"""A joint, and the one whose range depends on it."""
+
+_EXACT_RAD = 1e-9
 
 
 def _speeds() -> Array:
@@ -65,11 +76,14 @@ def step(
     wanted = np.clip(_finite(angles_rad, state.angles_rad), LOWER_RAD, UPPER_RAD)
     reach = SPEED_MAX_RAD_S * dt_s
     sent = _towards(state.angles_rad, wanted, reach, reach)
-    yaw = min(max(float(sent[_YAW]), -YAW_MAX_RAD), YAW_MAX_RAD)
-    low, high = pitch_range_rad(yaw)
-    pitch = min(max(float(sent[_PITCH]), low), high)
-    before = float(state.angles_rad[_PITCH])
-    sent[_PITCH] = before + min(max(pitch - before, -reach[_PITCH]), reach[_PITCH])
+    for leads, follows, range_rad in _COUPLED:
+        low, high = range_rad(float(sent[leads]))
+        before, value = float(state.angles_rad[follows]), float(sent[follows])
+        change = min(max(value, low), high) - before
+        sent[follows] = before + min(max(change, -reach[follows]), reach[follows])
+        if not low - _EXACT_RAD <= sent[follows] <= high + _EXACT_RAD:
+            # the range shrinks faster than the joint in it can go: the other one waits for it
+            sent[leads] = state.angles_rad[leads]
     return GuardState(np.where(soft > 0.0, sent, sensors.angles_rad), soft)
 
 

@@ -11,9 +11,16 @@ from lola_sensed import DT
 
 from hal.lola.core import STIFF_LEGS, HeadWish, Wanted
 from hal.lola.poses import LEGS, SEAT, STAND, is_seated
+from hal.nao.ankle_limits import left_roll_range_rad, right_roll_range_rad
 from hal.nao.head_limits import pitch_range_rad
 from hal.nao.joints import JOINT_INDEX, LOWER_RAD, UPPER_RAD
 from hal.types import HeadAngles
+
+COUPLED = (
+    ("HeadYaw", "HeadPitch", pitch_range_rad),
+    ("LAnklePitch", "LAnkleRoll", left_roll_range_rad),
+    ("RAnklePitch", "RAnkleRoll", right_roll_range_rad),
+)
 
 
 @settings(max_examples=20, deadline=None)
@@ -23,13 +30,14 @@ def test_first_targets_are_the_measured_pose_and_nothing_moves_by_itself(
 ) -> None:
     """S8, whatever the pose and however stiff the program before us has left it."""
     pose = LOWER_RAD + np.array(shares) * (UPPER_RAD - LOWER_RAD)
-    low, high = pitch_range_rad(pose[0])
-    pose[1] = min(max(pose[1], low), high)
+    for leads, follows, range_rad in COUPLED:
+        low, high = range_rad(pose[JOINT_INDEX[leads]])
+        pose[JOINT_INDEX[follows]] = min(max(pose[JOINT_INDEX[follows]], low), high)
     robot = Robot(pose.copy(), np.full(26, stiffness))
     first = robot.tick()
     assert first.angles_rad == pytest.approx(pose, abs=0.0)
     assert first.stiffness == pytest.approx(np.full(26, stiffness), abs=0.0)
-    robot.tick(times=200)
+    robot.tick(times=60)
     assert robot.sent is not None
     assert robot.sent.angles_rad == pytest.approx(pose, abs=1e-12)
 
