@@ -4,6 +4,8 @@
 over a session of its own, so that none waits for another: `body` the joints and the memory, `walk`
 the motion, `camera` the pictures. `guard` is the walk's watchdog, in a process of its own.
 
+A V4 is told as "v5": it has the same body and cameras.
+
 What is done to the robot, and when:
 
 - at start: Autonomous Life and its helpers are switched off, the camera is locked for colour work.

@@ -6,12 +6,13 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 
 from hal.errors import BackendError, CameraTimeoutError, HalError
 from hal.naoqi.channel import Channel
 from hal.naoqi.clock import EarliestArrival, is_plausible
 from hal.naoqi.controls import Locked, lock_controls, restore_controls
-from hal.naoqi.errors import CallRefusedError, NotConnectedError
+from hal.naoqi.errors import CallRefusedError, NotConnectedError, ServiceMissingError
 from hal.naoqi.ids import (
     CAMERA_IDS,
     RESOLUTION_NAMES,
@@ -190,7 +191,7 @@ class NaoqiCamera:
         """Subscriptions of a life before: NAOqi keeps no more than six of a name."""
         try:
             names = session.call("ALVideoDevice", "getSubscribers")
-        except CallRefusedError as error:
+        except (CallRefusedError, ServiceMissingError) as error:
             log.warning("stale subscriptions cannot be looked for: %s", error)
             return
         for name in names if isinstance(names, list | tuple) else ():
@@ -204,7 +205,9 @@ class NaoqiCamera:
         result = session.call("ALVideoDevice", "getImageRemote", self._handle, timeout_s=IMAGE_S)
         heard_ns = time.monotonic_ns()
         picture = picture_from(result, *self._size)
-        session.post("ALVideoDevice", "releaseImage", self._handle)
+        # not everywhere offered, nor mandatory
+        with suppress(ServiceMissingError):
+            session.post("ALVideoDevice", "releaseImage", self._handle)
         period_s = 1.0 / self._fps
         if picture is None or picture.stamp_ns == self._robot_ns:
             self._note_none(1)

@@ -90,7 +90,8 @@ def _listen(robot: Any, url: str, restart: threading.Event) -> tuple[Any, list[s
     try:
         session.listenStandalone(url)
     except RuntimeError as error:
-        raise BackendError(f"cannot listen on {url}: {str(error).splitlines()[0]}") from None
+        why = " ".join(str(error).split()).partition(" [")[0].rpartition(": ")[2]
+        raise BackendError(f"cannot listen on {url}: {why or error}") from None
     services = _services(robot, restart)
     for name, service in services.items():
         session.registerService(name, service)

@@ -184,6 +184,44 @@ def test_missing_services_are_done_without_or_told(peer):
     peer.again("become", {"missing": []})
 
 
+STRICT = (
+    "ALVideoDevice.getSubscribers",
+    "ALVideoDevice.releaseImage",
+    "ALVideoDevice.setParameter",
+    "ALMemory.insertData",
+    "ALMemory.getTimestamp",
+    "ALMemory.getData",
+    "ALMotion.robotIsWakeUp",
+    "ALMotion.getStiffnesses",
+    "ALRobotPosture.getPostureFamily",
+    "ALAutonomousLife.setState",
+    "ALBasicAwareness.setEnabled",
+)
+
+
+@pytest.mark.slow
+def test_robot_that_refuses_all_that_can_be_done_without(peer):
+    """Then it sees and walks all the same, and says what it did not get."""
+    for method in STRICT:
+        peer.world("refuse", method, "not for you")
+    robot = peer.robot()
+    try:
+        for _ in range(3):
+            frame = robot.camera.unseen(20.0)
+        assert abs(frame.stamp_ns - peer.world("pictureTaken")) < 150_000_000
+        assert "kCameraAutoExpositionID" in robot.camera.locked.not_taken
+        assert robot.body.clock_offset() is None
+        robot.walk.move_to(PlanarMotion(0.05, 0.0, 0.0), 5.0)
+        until(peer.is_moving)
+        robot.walk.stop()
+        until(lambda: not robot.walk.status().moving)
+    finally:
+        robot.close()
+        peer.reset()
+        # what it would not let us unsubscribe is left to the next one
+        peer.robot().close()
+
+
 def test_robot_that_is_not_there_is_one_line(peer):
     with pytest.raises(HalError, match="not reachable") as caught:
         peer.robot(url="tcp://127.0.0.1:1")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -144,6 +145,16 @@ def test_memory_knows_the_body_and_stamps_what_is_written(session):
 def test_options_are_checked(told, text):
     with pytest.raises(BackendError, match=text):
         split(OpenOptions(section={"naoqi": told}))
+
+
+def test_address_in_use_is_one_line():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        address = f"127.0.0.1:{taken.getsockname()[1]}"
+        with pytest.raises(BackendError, match=f"cannot listen on tcp://{address}: .") as caught:
+            speak(
+                "naoqi", OpenOptions(width=160, height=120), address, None, threading.Event(), print
+            )
+    assert "\n" not in str(caught.value)
 
 
 def test_no_other_camera():
