@@ -99,7 +99,7 @@ def _listen(robot: Any, url: str, restart: threading.Event) -> tuple[Any, list[s
 
 
 def _services(robot: Any, restart: threading.Event) -> dict[str, Any]:
-    from sim_backend.speak.naoqi_life import Life, Posture, Switch
+    from sim_backend.speak.naoqi_life import Life, Posture, Switch, System
     from sim_backend.speak.naoqi_memory import Memory
     from sim_backend.speak.naoqi_motion import Motion
     from sim_backend.speak.naoqi_video import video_service
@@ -112,6 +112,7 @@ def _services(robot: Any, restart: threading.Event) -> dict[str, Any]:
         "ALMemory": Memory(robot),
         "ALRobotPosture": Posture(robot),
         "ALAutonomousLife": Life(robot),
+        "ALSystem": System(),
         **{name: Switch(robot, name) for name in switches},
         "SimWorld": SimWorld(robot, restart),
     }

@@ -59,6 +59,15 @@ class Life:
 
 
 @qi.multiThreaded()
+class System:
+    """ALSystem: only its version, which is the one that `naoqi_api.yaml` describes."""
+
+    def systemVersion(self) -> str:
+        """As NAOqi writes it."""
+        return "2.8.5.10"
+
+
+@qi.multiThreaded()
 class Switch:
     """A helper that can be on or off: ALBasicAwareness and its like."""
 

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-
-pytest.importorskip("qi", reason="the package qi is not installed")
-
 from naoqi_peer import Peer
 
 from hal.naoqi.robot import NaoqiRobot
@@ -15,6 +12,7 @@ from hal.naoqi.robot import NaoqiRobot
 
 @pytest.fixture(scope="session")
 def _shared() -> Iterator[Peer]:
+    pytest.importorskip("qi", reason="the package qi is not installed")
     peer = Peer()
     yield peer
     peer.close()

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import qi
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,6 +18,8 @@ from hal.naoqi.login import Login
 from hal.naoqi.session import Session
 from sim_backend.speak.naoqi_gate import Gate, login_in
 from sim_backend.speak.naoqi_options import PeerOptions
+
+qi = pytest.importorskip("qi", reason="the package qi is not installed")
 
 RIGHT = Login("nao", "open sésame")
 
