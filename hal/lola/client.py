@@ -33,6 +33,16 @@ def meeting_place(path: str) -> bytes:
     return b"\0naod-lola-" + digest.encode()
 
 
+def is_served(path: str) -> bool:
+    """Whether a process of ours has this LoLA; it is not disturbed by being asked."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as probe:
+        try:
+            probe.bind(meeting_place(path))
+        except OSError:
+            return True
+    return False
+
+
 def peer_uid(link: socket.socket) -> int:
     """The user at the other end of a Unix socket."""
     raw = link.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)

@@ -14,6 +14,7 @@ from hal.backends import OpenOptions
 from hal.clock import MonotonicClock
 from hal.errors import HalError
 from hal.health import Finding
+from hal.lola.client import is_served
 from hal.lola.link import connect
 from hal.lola.options import checked
 from hal.lola.sensors import Sensors, decode_sensors
@@ -22,6 +23,9 @@ from hal.video.source import open_camera
 
 CONNECT_S, LISTEN_S, PATIENCE_S = 2.0, 1.0, 3.0
 PICTURES = 8
+_TAKEN = Finding(
+    "lola", "warn", "a daemon has this robot, and it is left alone", "ask it: naod ctl status"
+)
 BATTERY_LOW = 0.2
 AGE_MAX_S = 0.25
 NOT_THERE = "is LoLA running, with /home/nao/robocup.conf, and no other program on it?"
@@ -32,7 +36,8 @@ def examine(options: OpenOptions) -> list[Finding]:
     told, device, controls = checked(options)
     found: list[Finding] = []
     try:
-        found += _body(_heard(told.socket))
+        # nobody knows what LoLA does with a second client
+        found += [_TAKEN] if is_served(told.socket) else _body(_heard(told.socket))
     except HalError as error:
         found.append(Finding("lola", "fail", str(error), NOT_THERE))
     try:

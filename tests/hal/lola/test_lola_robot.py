@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from lola_peer import Peer
 
-from hal.backends import OpenOptions, open_robot
+from hal.backends import OpenOptions, examine, open_robot
 from hal.errors import BackendError, MotionRefusedError
 from hal.health import Examined
 from hal.lola.poses import LEGS, SEAT, STAND
@@ -105,6 +105,16 @@ def test_examination_is_all_well(robot: Robot) -> None:
     assert "P0000073A07S94700012" in found["lola"].text
     assert found["joints"].status == "ok"
     assert found["battery"].text == "92%, not charging"
+
+
+def test_doctor_leaves_a_robot_alone_that_a_daemon_has(
+    robot: Robot, peer: Peer, folder: Path
+) -> None:
+    """Another client of LoLA's would do nobody knows what."""
+    found = [f for f in examine("lola", options(peer, folder)) if f.check == "lola"]
+    assert [f.text for f in found] == ["a daemon has this robot, and it is left alone"]
+    robot.body.latest()
+    assert peer.lines == ["a client has connected"]
 
 
 def test_chest_button_stands_it_up_and_the_walk_is_moving_meanwhile(
