@@ -55,7 +55,8 @@ def head_for(rig: Rig, at: Estimate, place_px: NDArray[np.float64]) -> HeadAngle
         pixels, J = rig.pixels(at, head, 0, centre)
         step = np.linalg.lstsq(J[0, :, HEADS : HEADS + 2], place_px - pixels[0], rcond=None)[0]
         step = np.clip(step, -0.3, 0.3)
-        head = clip_head(HeadAngles(head.yaw_rad + step[0], head.pitch_rad + step[1]))
+        yaw, pitch = (float(v) for v in step)
+        head = clip_head(HeadAngles(head.yaw_rad + yaw, head.pitch_rad + pitch))
     return head
 
 

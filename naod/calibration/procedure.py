@@ -30,6 +30,9 @@ NEAR = 0.5
 """Share of the picture that the first few views keep to."""
 
 STAND_UP_S = 60.0
+MOVES = "the robot moves"
+POLL_S, STILL_S, MOVING_RAD = 0.1, 1.0, 0.01
+"""Still is who has moved no joint by more than that from poll to poll for so long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +63,7 @@ def calibrate(
         tell(f"hold the head still in {wanted.views} poses, the rectangle wholly in view")
         recorded = recorder.by_hand(wanted.views)
         return evaluated(recorded, config.camera, robot.info.version, camera, shape, wanted.lens)
-    before = head_angles(robot.body.latest())
-    _await_obedience(robot, before, tell)
+    before = await_obedience(robot, tell)
     try:
         recorded = _driven(recorder, config.camera, camera, shape, wanted.views)
     finally:
@@ -69,24 +71,33 @@ def calibrate(
     return evaluated(recorded, config.camera, robot.info.version, camera, shape, wanted.lens)
 
 
-def _await_obedience(robot: Robot, head: HeadAngles, tell: Tell) -> None:
-    """Wait until the head may be turned: the robot may have to be stood up first.
+def await_obedience(robot: Robot, tell: Tell) -> HeadAngles:
+    """Wait until the robot is still and its head may be turned: it may have to stand up first.
 
-    Raises MotionRefusedError with the robot's reason when it does not come to that.
+    Returns where the head is. Raises MotionRefusedError with the robot's reason when it does not
+    come to that.
     """
-    clock, told = robot.clock, ""
+    clock, told, still_polls = robot.clock, "", 0
     give_up_ns = clock.now_ns() + round(STAND_UP_S * 1e9)
+    before = robot.body.latest().angles_rad
     while True:
+        clock.sleep_until(clock.now_ns() + round(POLL_S * 1e9))
+        body = robot.body.latest()
+        is_still = float(np.abs(body.angles_rad - before).max()) < MOVING_RAD
+        still_polls, before = still_polls + 1 if is_still else 0, body.angles_rad
+        head = head_angles(body)
         try:
             robot.head.look(head, 0.5)
-            return
+            if still_polls * POLL_S >= STILL_S:
+                return head
+            why = MOVES
         except MotionRefusedError as error:
-            if clock.now_ns() > give_up_ns:
-                raise
-            if str(error) != told:
-                told = str(error)
-                tell(f"waiting: {told}")
-        clock.sleep_until(clock.now_ns() + 200_000_000)
+            why = str(error)
+        if clock.now_ns() > give_up_ns:
+            raise MotionRefusedError(why)
+        if why not in (told, MOVES):
+            told = why
+            tell(f"waiting: {told}")
 
 
 def _driven(

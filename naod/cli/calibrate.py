@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from hal.protocols import Robot
 from hal.yuyv import rgb_from_yuyv
 from naod.calibration.editing import write_camera
-from naod.calibration.procedure import VIEWS, Wanted, calibrate
+from naod.calibration.procedure import VIEWS, Wanted, await_obedience, calibrate
 from naod.calibration.result import VIEWS_MIN, Calibration, CalibrationError, camera_lines
+from naod.calibration.warm_up import warm_up
 from naod.cli.learn import parse_region
 from naod.cli.output import print_json
 from naod.config import DaemonConfig, load_config, state_folder
@@ -72,8 +73,12 @@ def run(args: argparse.Namespace) -> int:
     model = None if args.model is None else load_model(args.model)
     region = None if args.region is None else parse_region(args.region)
     beside = Path.cwd() if args.config is None else args.config.resolve().parent
+    if args.picture is None:
+        warm_up(config)
     robot = open_configured(config, beside, real_time=False)
     try:
+        if not args.by_hand:
+            await_obedience(robot, _tell)
         frame = robot.camera.next(PICTURE_S)
         if args.picture is not None:
             return _save(args.picture, frame.yuyv)

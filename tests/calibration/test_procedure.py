@@ -8,6 +8,7 @@ pytest.importorskip("sim_backend.backend")
 from rehearsal import ERROR_DEG, config, learnt, opened, settled
 
 from naod.calibration.procedure import Wanted, calibrate
+from naod.calibration.warm_up import warm_up
 
 
 @pytest.fixture
@@ -27,3 +28,8 @@ def test_a_five_degree_error_is_found_to_a_tenth(robot):
     assert (error < 4.0 * np.array(found.sigma_deg)).all()
     assert found.views >= 8
     assert found.camera.fx == pytest.approx(598.0, abs=4.0 * found.lens_sigma[0])
+
+
+@pytest.mark.parametrize(("width", "height"), [(640, 480), (320, 240)])
+def test_the_painted_rectangle_is_found(width, height):
+    assert warm_up(config(width=width, height=height))
