@@ -39,8 +39,9 @@ def serve(
     if told.version != "v6":
         raise BackendError(f"LoLA is of the V6, not of the {told.version}")
     with ExitStack() as stack:
-        scene = build_scene(furnished(told.scenario, told.folder, told.seed), True)
+        scene = None
         if camera is not None:
+            scene = build_scene(furnished(told.scenario, told.folder, told.seed), True)
             warm_up(scene)
         world = JointWorld(
             told.scenario, told.version, told.seed, time.monotonic_ns, posture(POSTURE)
@@ -48,7 +49,7 @@ def serve(
         clock = RealClock(world)
         stack.callback(clock.close)
         served: dict[str, object] = {"speaks": "lola", "socket": address}
-        if camera is not None:
+        if camera is not None and scene is not None:
             frames = FrameServer(
                 _frame_address(camera), _eye(world, clock, scene, options, told, stack)
             )
