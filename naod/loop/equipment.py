@@ -117,12 +117,13 @@ class Equipment:
             return None
         blob = found.blob
         ray = np.append(self.camera.normalised(np.array([blob.centre_px]))[0], 1.0)
-        pose = self._locate(frame, blob, self.config.approach.estimator)
+        pose = self._locate(frame, blob, self.config.approach.estimator, prior)
         blur_px = self._blur_px(frame, _point(ray, pose, prior), motion)
+        edges_blur_px = pose.blur_px if pose else 0.0
         T = self.T_base_camera(body)
         placement = None
         if pose is not None and T is not None:
-            placement = placed(frame.stamp_ns, pose, T, motion, blur_px)
+            placement = placed(frame.stamp_ns, pose, T, motion, blur_px, edges_blur_px)
         return Sighting(
             stamp_ns=frame.stamp_ns,
             blob=blob,
@@ -132,9 +133,9 @@ class Equipment:
             T_torso_camera=self.body.frames(body.angles_rad).T_torso_camera,
             pose=pose,
             look=placement.look() if placement else None,
-            paper=self._printed(frame, blob, T),
+            paper=self._printed(frame, blob, T, prior),
             placement=placement,
-            blur_px=blur_px,
+            blur_px=max(blur_px, edges_blur_px),
             probability=found.probability,
         )
 
@@ -143,14 +144,18 @@ class Equipment:
             return 0.0
         return math.hypot(*motion_px(motion, point, self.camera, frame.exposure_s))
 
-    def _printed(self, frame: Frame, blob: Blob, T: Matrix | None) -> EgoPose | None:
-        printed = (
-            self._locate(frame, blob, "paper") if self.compare_paper and T is not None else None
-        )
-        return ego_pose(T @ printed.T_camera_object) if printed and T is not None else None
+    def _printed(
+        self, frame: Frame, blob: Blob, T: Matrix | None, prior: Prior | None
+    ) -> EgoPose | None:
+        if T is None or not self.compare_paper:
+            return None
+        printed = self._locate(frame, blob, "paper", prior)
+        return ego_pose(T @ printed.T_camera_object) if printed else None
 
-    def _locate(self, frame: Frame, blob: Blob, estimator: Estimator) -> ObjectPose | None:
-        return locate(frame.yuyv, blob, self.shape, self.camera, estimator)
+    def _locate(
+        self, frame: Frame, blob: Blob, estimator: Estimator, near: Prior | None
+    ) -> ObjectPose | None:
+        return locate(frame.yuyv, blob, self.shape, self.camera, estimator, near)
 
     def _segmenter_for(self, model: ColourModel) -> Segmenter:
         if self._segmenter is None or self._segmenter[0] is not model:
