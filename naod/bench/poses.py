@@ -15,8 +15,8 @@ from naod.bench.room import Thing
 from naod.bench.score import width_px
 from naod.bench.table import Report
 from naod.config import SegmentationConfig
+from naod.finding.find import find_object
 from naod.geometry.camera import PinholeCamera, nominal_camera
-from naod.perception.blob import find_blob
 from naod.perception.learning import learn_model
 from naod.perception.segmenter import Segmenter
 from naod.pose.contour import corners_px
@@ -82,10 +82,13 @@ def measure(sequence: Sequence, errors: dict[Estimator, Errors]) -> None:
         T = frame.T_camera_object
         if frame.mask is None or T is None or not _whole(shape, T, camera):
             continue
-        blob = find_blob(segmenter.segment(frame.yuyv))
+        segmentation = segmenter.segment(frame.yuyv)
+        found = find_object(segmentation, shape, camera, None, segmenter.settings)
         for estimator, kept in errors.items():
             kept.frames += 1
-            pose = None if blob is None else locate(frame.yuyv, blob, shape, camera, estimator)
+            if found is None:
+                continue
+            pose = locate(frame.yuyv, found.blob, shape, camera, estimator)
             if pose is not None:
                 _add(kept, pose, frame, shape, camera)
 

@@ -15,6 +15,7 @@ from naod.bench.peers.peer import Peer
 from naod.bench.table import Report
 from naod.bench.timing import Timing, interleaved
 from naod.config import SegmentationConfig
+from naod.finding.find import find_object
 from naod.geometry.camera import nominal_camera
 from naod.perception.blob import find_blob
 from naod.perception.learning import learn_model
@@ -22,6 +23,7 @@ from naod.perception.segmenter import Segmenter
 from naod.pose.locate import locate
 
 MEMCPY, BOX, POSE = "memcpy of the frame", "naod: frame to box", "naod: frame to exact pose"
+OBJECT = "naod: frame to object, by shape and size"
 GRABCUT = "GrabCut, 3 iterations, whole frame"
 FRAMES_MIN = 60
 """More frames than a cache holds go round, as a camera's are new every time."""
@@ -65,6 +67,7 @@ def _contestants(
     return {
         MEMCPY: lambda n: np.copyto(copy, yuyvs[n % len(yuyvs)]),
         BOX: _box(taught, yuyvs),
+        OBJECT: _object(taught, yuyvs),
         POSE: _pose(taught, yuyvs),
         **{name: _peer(peer, frames) for name, peer in others.items()},
     }
@@ -94,6 +97,17 @@ def _box(taught: Taken, yuyvs: list[NDArray[np.uint8]]) -> Work:
     return lambda n: find_blob(segmenter.segment(yuyvs[n % len(yuyvs)]))
 
 
+def _object(taught: Taken, yuyvs: list[NDArray[np.uint8]]) -> Work:
+    segmenter, shape = _segmenter(taught), taught.shape
+    camera = nominal_camera("v6", *segmenter.reduction.size)
+
+    def find(n: int) -> object:
+        segmentation = segmenter.segment(yuyvs[n % len(yuyvs)])
+        return find_object(segmentation, shape, camera, None, segmenter.settings)
+
+    return find
+
+
 def _pose(taught: Taken, yuyvs: list[NDArray[np.uint8]]) -> Work:
     """Without any knowledge of the frame before."""
     segmenter, shape = _segmenter(taught), taught.shape
@@ -102,7 +116,8 @@ def _pose(taught: Taken, yuyvs: list[NDArray[np.uint8]]) -> Work:
 
     def pose(n: int) -> object:
         yuyv = yuyvs[n % len(yuyvs)]
-        blob = find_blob(segmenter.segment(yuyv))
-        return None if blob is None else locate(yuyv, blob, shape, camera)
+        segmentation = segmenter.segment(yuyv)
+        found = find_object(segmentation, shape, camera, None, segmenter.settings)
+        return None if found is None else locate(yuyv, found.blob, shape, camera)
 
     return pose

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.config import SegmentationConfig
-from naod.perception.blob import find_blob
+from naod.finding.find import find_object
+from naod.geometry.camera import nominal_camera
 from naod.perception.colour_model import Region
 from naod.perception.learning import DEFAULT_KIND, ModelKind, learn_model
 from naod.perception.segmenter import Segmenter
@@ -27,6 +28,7 @@ class Ours:
     ) -> None:
         self._size, self._kind, self._shape = size, kind, shape
         self._settings = msgspec.structs.replace(SegmentationConfig(), optimiser=optimiser)
+        self._camera = nominal_camera("v6", *size)
         self._segmenter: Segmenter | None = None
 
     def learn(self, yuyv: NDArray[np.uint8], region: Region) -> None:
@@ -38,6 +40,6 @@ class Ours:
         """Labels and the object's box."""
         assert self._segmenter is not None
         segmentation = self._segmenter.segment(yuyv)
-        blob = find_blob(segmentation, self._settings.pixels_min)
-        corners = None if blob is None else blob.corners_px
-        return Seen(segmentation.mask.copy(), segmentation.scale, corners)
+        found = find_object(segmentation, self._shape, self._camera, None, self._settings)
+        corners = None if found is None else found.blob.corners_px
+        return Seen(segmentation.mask, segmentation.scale, corners)

@@ -15,7 +15,7 @@ from naod.pose.objects import ObjectShape
 
 OURS: dict[str, str] = {
     "naod": "",
-    "table, exact": "table",
+    "mixture of Gaussians, exact": "mixture",
     "one Gaussian, exact": "gaussian",
     "one Gaussian, ICM": "gaussian icm",
 }
