@@ -11,6 +11,7 @@ from dataclasses import replace
 from naod.approach.displacement import shape_kind
 from naod.localisation.camera_motion import CameraMotion
 from naod.loop.approach import approach
+from naod.loop.elsewhere import believed
 from naod.loop.equipment import Equipment, Sighting
 from naod.loop.expectation import expected
 from naod.loop.learning import gather, show_goal
@@ -71,6 +72,7 @@ def decide(
     state = stand(state, seen.walk, now_ns)
     if seen.frame is not None:
         state = gather(replace(state, frame_ns=seen.frame.stamp_ns), seen.frame, out)
+    sighting = believed(equipment, state, sighting, now_ns)
     state = follow_light(state, sighting, seen.frame, out)
     if state.mode != "idle" and state.model is not None:
         state = gaze(equipment, state, sighting, seen, out)

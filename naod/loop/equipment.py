@@ -38,6 +38,7 @@ class Sighting:
     `ray_in_camera`: (3,) towards the blob's centre. `look` and `placement` are None when no pose
     could be had: the outline is cut off, or the feet do not say where the ground is. `blur_px`: how
     far the object moved through the picture during its exposure. `probability`: that it is it.
+    `expected`: where it was looked for.
     """
 
     stamp_ns: int
@@ -52,6 +53,7 @@ class Sighting:
     placement: Placement | None = None
     blur_px: float = 0.0
     probability: float = 1.0
+    expected: Prior | None = None
 
 
 class Equipment:
@@ -137,6 +139,7 @@ class Equipment:
             placement=placement,
             blur_px=max(blur_px, edges_blur_px),
             probability=found.probability,
+            expected=prior,
         )
 
     def _blur_px(self, frame: Frame, point: Vector, motion: CameraMotion | None) -> float:

@@ -53,6 +53,13 @@ def anchored(placement: Placement, walk: WalkState) -> Anchor:
     return Anchor(placement.stamp_ns, placement.T_base_object, total, walk.odometry)
 
 
+def carried_on(prior: Prior, T_base_camera: Matrix, stamp_ns: int, walk: WalkState) -> Anchor:
+    """What is to be remembered where the object was seen as expected, but not better known."""
+    R = both(T_base_camera[:3, :3])
+    T_base_object = T_base_camera @ prior.T_camera_object
+    return Anchor(stamp_ns, T_base_object, R @ prior.covariance @ R.T, walk.odometry)
+
+
 def expected(
     anchor: Anchor,
     walk: WalkState,

@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from hal.types import HeadAngles
 from naod.gaze.centring import head_towards, is_centred
 from naod.gaze.search import DWELL_S, PLACES, search_place
+from naod.localisation.placement import Placement
+from naod.loop.elsewhere import is_there
 from naod.loop.equipment import Equipment, Sighting
-from naod.loop.expectation import anchored
+from naod.loop.expectation import Anchor, anchored, carried_on
 from naod.loop.outbox import Outbox
 from naod.loop.state import LoopState, Target
 from naod.loop.types import Observation
@@ -67,9 +71,21 @@ def _noted(
     before = state.target
     look, anchor = (before.look, before.anchor) if before else (None, None)
     if sighting.look is not None and sighting.placement is not None:
-        look, anchor = sighting.look, anchored(sighting.placement, walk)
+        look, anchor = sighting.look, _anchor(equipment, sighting, sighting.placement, walk)
     target = Target(sighting.stamp_ns, look, place, anchor, sighting.blur_px)
     return replace(state, target=target, search_from_ns=None)
+
+
+def _anchor(
+    equipment: Equipment, sighting: Sighting, placement: Placement, walk: WalkState
+) -> Anchor:
+    """Cut off, it may be metres from where it seems: what is known better is kept."""
+    fresh, prior = anchored(placement, walk), sighting.expected
+    if prior is None or not is_there(equipment, sighting, prior):
+        return fresh
+    if np.trace(fresh.covariance[:3, :3]) <= np.trace(prior.covariance[:3, :3]):
+        return fresh
+    return carried_on(prior, placement.T_base_camera, sighting.stamp_ns, walk)
 
 
 def _centre(equipment: Equipment, state: LoopState, sighting: Sighting, out: Outbox) -> LoopState:

@@ -60,16 +60,17 @@ def is_it(run, tick):
     return bool(np.linalg.norm(tick.sighting.blob.centre_px - middle) < 40.0)
 
 
+@pytest.mark.parametrize("turned_back", [True, False], ids=["by somebody", "by its search"])
 @pytest.mark.parametrize("away", AWAY)
-def test_found_within_two_frames_of_coming_into_view(run, away):
-    """Somebody turns the head back to where the object was."""
+def test_found_within_two_frames_of_coming_into_view(run, away, turned_back):
     back = head_angles(run.robot.body.latest())
     lose(run, away)
     assert run.state.search_from_ns is not None
     seen = 0
     for _ in range(60):
         tick = run.tick()
-        run.robot.head.look(back, 2.0)
+        if turned_back:
+            run.robot.head.look(back, 2.0)
         if tick.seen.frame is None or not in_view(run, tick):
             continue
         seen += 1
@@ -78,6 +79,10 @@ def test_found_within_two_frames_of_coming_into_view(run, away):
     assert 1 <= seen <= FRAMES_MAX
     assert run.state.search_from_ns is None
     assert run.state.target.seen_ns == tick.seen.frame.stamp_ns
+    for _ in range(20):
+        tick = run.tick()
+    assert in_view(run, tick)
+    assert is_it(run, tick)
 
 
 def object_in_camera(run, tick):

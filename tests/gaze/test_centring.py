@@ -10,7 +10,7 @@ from hal.nao.joints import JOINT_INDEX
 from hal.nao.postures import posture
 from hal.types import HeadAngles
 from naod.gaze.centring import head_towards, is_centred, offset_rad
-from naod.gaze.search import DWELL_S, PLACES, search_place
+from naod.gaze.search import DWELL_S, FIRST_S, PLACES, search_place
 from naod.localisation.body_model import BodyModel
 
 
@@ -61,7 +61,7 @@ def test_at_the_end_of_the_neck_it_counts_as_centred():
 def test_search_begins_where_it_was_last_seen_and_covers_both_sides():
     first = HeadAngles(0.4, 0.1)
     assert search_place(first, 0.0) == first
-    visited = [search_place(first, (i + 1.5) * DWELL_S) for i in range(len(PLACES))]
+    visited = [search_place(first, FIRST_S + (i + 0.5) * DWELL_S) for i in range(len(PLACES))]
     assert set(visited) == set(PLACES)
     assert min(p.yaw_rad for p in visited) < -1.5
     assert max(p.yaw_rad for p in visited) > 1.5
