@@ -27,8 +27,11 @@ from naod.perception.colour_model import Region
 
 LOOKS, SETTLING = 20, 20
 CAN = (1.2, 0.0, 0.4575)
-NOISE = {"rho_m": 0.002, "theta_rad": 0.002, "z_m": 0.002}
-"""What the medians of so few looks differ by from run to run: the clocks differ, and the noise."""
+NOISE = {"rho_m": 0.006, "theta_rad": 0.003, "z_m": 0.003}
+"""A stated sigma of one look: the head comes to rest a little elsewhere in each run, and all looks
+of a run share what its encoders say there."""
+
+COMPILING_S = 120.0
 
 
 class Robot:
@@ -154,7 +157,7 @@ def test_centres_and_localises_as_well_as_in_one_process(
     egos = []
     with Watch(daemon.endpoint, "state") as watch:
         for _ in range(SETTLING):
-            watch.wait_for("state")
+            watch.wait_for("state", timeout_s=COMPILING_S)
         for _ in range(LOOKS):
             egos.append(watch.wait_for("state", lambda m: m["target"]["ego"])["target"]["ego"])
     through_lola, alone = errors(egos), in_process(region)
