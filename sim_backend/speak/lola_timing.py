@@ -53,7 +53,7 @@ def measure(seconds: float, in_process: bool, real_time: bool) -> LoopTiming:
                 raise BackendError("the metronome did not start")
             told = Told(
                 socket=path,
-                sit_after_s=1e6,
+                sit_after_s=30.0,
                 slots=count + SPARE_SLOTS,
                 real_time=real_time,
                 quiet=True,
