@@ -72,6 +72,8 @@ def run(args: argparse.Namespace) -> int:
     shape = None if args.object is None else _rectangle(load_object(args.object))
     model = None if args.model is None else load_model(args.model)
     region = None if args.region is None else parse_region(args.region)
+    if model is None and region is None and args.picture is None:
+        model = _known(config)
     beside = Path.cwd() if args.config is None else args.config.resolve().parent
     if args.picture is None:
         warm_up(config)
@@ -85,7 +87,8 @@ def run(args: argparse.Namespace) -> int:
         shape = shape or _rectangle(shape_for(config, robot))
         if region is not None:
             model = learn([frame.yuyv], region)
-        return _calibrated(args, config, robot, model or _known(config), shape)
+        assert model is not None
+        return _calibrated(args, config, robot, model, shape)
     finally:
         robot.close()
 
