@@ -16,6 +16,7 @@ from naod.pose.contour import CYLINDER
 
 GUESSES_MAX = 12
 RATIO_SLACK = 1.25
+OTHERS_MAX = 3
 TILT_LEAST_RAD, TILT_MOST_RAD = 0.15, 1.2
 CUT_TILTS_RAD = (0.3, 0.75)
 """Of a can of which the box does not show the height, towards the viewer and away."""
@@ -275,8 +276,17 @@ def _turned(
 
 
 @njit(cache=True, nogil=True)
-def other_readings(kind: int, T: NDArray[np.float64], out: NDArray[np.float64]) -> int:
-    """A pose found, (3, 4), and those that look nearly like it."""
+def other_readings(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    T: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> int:
+    """A pose found, (3, 4), and those that look nearly like it, up to OTHERS_MAX of them.
+
+    A can that is tilted more than its diagonal looks as high as one that is tilted less.
+    """
     out[0] = T
     if kind != CYLINDER:
         mirror(T, out[1])
@@ -284,4 +294,6 @@ def other_readings(kind: int, T: NDArray[np.float64], out: NDArray[np.float64]) 
     forward = _unit(T[:, 3].copy())
     tilt = math.asin(min(max(-_dot(T[:, 1], forward), -1.0), 1.0))
     tilted(T, -math.copysign(max(abs(tilt), TILT_LEAST_RAD), tilt), out[1])
-    return 2
+    as_high = max(2.0 * math.atan2(half_width, half_height) - abs(tilt), TILT_LEAST_RAD)
+    tilted(T, math.copysign(min(as_high, TILT_MOST_RAD), tilt), out[2])
+    return 3

@@ -183,10 +183,10 @@ def _shares(
 
 
 EDGE, PER_POINT = 2, 3
-SHADED = 0.02
+SHADED = 0.06
 """Share of a blur that is as wide as the object by which its edges may seem shifted."""
 
-SMALL_PX = 30.0
+SMALL_PX = 15.0
 """Width of an object on which straight pieces and plateaus are twice as coarse a description."""
 
 

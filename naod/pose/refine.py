@@ -11,7 +11,7 @@ from naod.pose.around import narrowest, places_around, seen_outline
 from naod.pose.contour import VERTICES
 from naod.pose.explore import READINGS, explore, residuals_of, stand_up
 from naod.pose.fit import descend
-from naod.pose.guesses import other_readings
+from naod.pose.guesses import OTHERS_MAX, other_readings
 from naod.pose.lens import focal, from_pixels
 
 LOOKED, FOUND, BLUR, SPAN, MOVED = range(5)
@@ -127,7 +127,7 @@ def find_readings(
     """
     points, sigmas = np.empty((WIDE_PLACES, 2)), np.empty(WIDE_PLACES)
     looked, counted = np.empty(4, dtype=np.int64), np.empty(TALLY)
-    guesses, found = np.empty((READINGS, 3, 4)), np.empty((READINGS, 3, 4))
+    guesses, found = np.empty((OTHERS_MAX, 3, 4)), np.empty((READINGS, 3, 4))
     wide, best, made = max(WIDE_GRAINS * grain_px, NEAR_PX), np.inf, 0
     starts = poses[:count].copy()
     for k in range(count):
@@ -139,7 +139,7 @@ def find_readings(
             continue
         on_plane = np.empty((seen, 2))
         from_pixels(lens, points[:seen], on_plane)
-        started = other_readings(kind, starts[k], guesses)
+        started = other_readings(kind, half_width, half_height, starts[k], guesses)
         grain = WIDE_GRAIN_PX / focal(lens)
         several = explore(kind, half_width, half_height, on_plane, guesses, started, grain, found)
         if several == 0:
