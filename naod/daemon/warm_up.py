@@ -16,7 +16,7 @@ from hal.types import BodyState, Frame
 from naod.geometry.camera import PinholeCamera
 from naod.loop.equipment import Equipment, Sighting
 from naod.perception.colour_model import Region
-from naod.perception.learning import DEFAULT_KIND, ModelKind, learn_model
+from naod.perception.learning import DEFAULT_KIND, KINDS, ModelKind, learn_model
 from naod.pose.objects import Cylinder, ObjectShape
 
 log = logging.getLogger(__name__)
@@ -37,8 +37,10 @@ def warm_up(equipment: Equipment, robot: Robot) -> None:
         writeable = bool(robot.camera.unseen(FIRST_PICTURE_S).yuyv.flags.writeable)
     except HalError as error:
         log.warning("no first picture: %s", error)
-    sighting = rehearse(equipment, robot.body.latest(), writeable)
-    if sighting is None or sighting.pose is None:
+    body = robot.body.latest()
+    # the model in the state folder may be of any kind
+    seen = [rehearse(equipment, body, writeable, kind) for kind in KINDS]
+    if any(sighting is None or sighting.pose is None for sighting in seen):
         log.warning("the painted object was not localised: the first look may take longer")
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.colour_model import (
@@ -28,6 +29,8 @@ PIXELS_PER_SAMPLE = 4.0
 """Neighbouring pixels say the same (chroma is shared by two, demosaicing spreads three): so many
 count as one when components are weighed against data."""
 ROUNDS, SETTLED = 40, 1e-4
+NEGLIGIBLE = -40.0
+"""Logarithm of a share of the density that no float of it would show."""
 PARAMETERS = 10
 """Of one component: weight, mean, covariance."""
 
@@ -84,19 +87,55 @@ def fit(pixels: Floats, count: int) -> tuple[tuple[Component, ...], float]:
 
 def log_density(colours: Floats, component: Component, light_std: float = 0.0) -> Floats:
     """ln of weight times density at colours (..., 3); widened along its line of shades."""
-    mean = np.array(component.mean)
-    shades = light_std * (mean - (0.0, 128.0, 128.0))
-    covariance = np.array(component.covariance) + np.outer(shades, shades)
-    whitening = np.linalg.inv(np.linalg.cholesky(covariance))
-    k = ((colours - mean) @ whitening.T) ** 2
-    log_g = 0.5 * (3.0 * math.log(2.0 * math.pi) + float(np.linalg.slogdet(covariance)[1]))
-    return np.asarray(math.log(component.weight) - log_g - 0.5 * k.sum(axis=-1))
+    mean, precision, log_peak = _widened(component, light_std)
+    offsets = colours - mean
+    k = np.einsum("...i,ij,...j->...", offsets, precision, offsets)
+    return np.asarray(log_peak - 0.5 * k)
 
 
 def energies(mixture: ColourMixture, colours: Floats, light_std: float) -> Floats:
     """-ln p of colours (..., 3), in nat: what equation 3's ln g + k / 2 is for one Gaussian."""
-    logs = [log_density(colours, one, light_std) for one in mixture.components]
-    return -np.logaddexp.reduce(np.stack(logs), axis=0)
+    rows = np.array([_coefficients(one, light_std) for one in mixture.components])
+    flat = np.ascontiguousarray(colours, dtype=np.float64).reshape(-1, 3)
+    out = np.empty(len(flat))
+    _energies(flat, rows, np.empty(len(rows)), out)
+    return out.reshape(colours.shape[:-1])
+
+
+def _widened(component: Component, light_std: float) -> tuple[Floats, Floats, float]:
+    """Mean (3,), precision (3, 3), and ln of weight times density at the mean."""
+    mean = np.array(component.mean)
+    shades = light_std * (mean - (0.0, 128.0, 128.0))
+    covariance = np.array(component.covariance) + np.outer(shades, shades)
+    log_g = 0.5 * (3.0 * math.log(2.0 * math.pi) + float(np.linalg.slogdet(covariance)[1]))
+    return mean, np.linalg.inv(covariance), math.log(component.weight) - log_g
+
+
+def _coefficients(component: Component, light_std: float) -> Floats:
+    """(10,) of the polynomial in Y, U, V that `log_density` is: squares, products, Y, U, V, 1."""
+    mean, P, log_peak = _widened(component, light_std)
+    slope = P @ mean
+    squares, products = -0.5 * np.diag(P), -np.array([P[0, 1], P[0, 2], P[1, 2]])
+    return np.concatenate([squares, products, slope, [log_peak - 0.5 * mean @ slope]])
+
+
+@njit(cache=True, nogil=True)
+def _energies(colours: Floats, rows: Floats, logs: Floats, out: Floats) -> None:
+    """-ln p of colours (n, 3) from coefficients (m, 10); `logs` (m,) is scratch."""
+    for i in range(len(colours)):
+        y, u, v = colours[i]
+        best = -np.inf
+        for k in range(len(rows)):
+            a = rows[k]
+            in_y = y * (a[0] * y + a[3] * u + a[4] * v + a[6])
+            in_u = u * (a[1] * u + a[5] * v + a[7])
+            logs[k] = in_y + in_u + v * (a[2] * v + a[8]) + a[9]
+            best = max(best, logs[k])
+        total = 0.0
+        for k in range(len(rows)):
+            if logs[k] - best > NEGLIGIBLE:
+                total += math.exp(logs[k] - best)
+        out[i] = -best - math.log(total)
 
 
 def _estimated(pixels: Floats, shares: Floats) -> tuple[Component, ...]:

@@ -8,7 +8,7 @@ from naod.errors import InputError
 from naod.perception.blob import find_blob
 from naod.perception.colour_model import ColourMixture, Region, learn, load_model, save_model
 from naod.perception.energy import STEPS, Singletons
-from naod.perception.mixture import energies, fit, learn_mixture
+from naod.perception.mixture import energies, fit, learn_mixture, log_density
 from naod.perception.segmenter import Segmenter
 
 SIZE = (320, 240)
@@ -96,3 +96,23 @@ def test_the_file_gives_it_back_and_a_broken_component_is_one_line(tmp_path):
     with pytest.raises(InputError, match="positive definite") as error:
         load_model(path)
     assert "\n" not in str(error.value)
+
+
+def test_energies_are_those_of_the_densities_summed():
+    """Against the sum in numpy, where one component rules and where several count."""
+    mixture = learn_mixture([striped(5, COLOURS[3])], MARKED)
+    colours = np.random.default_rng(4).uniform(0, 255, (20, 300, 3))
+    logs = np.stack([log_density(colours, one, 0.12) for one in mixture.components])
+    assert energies(mixture, colours, 0.12) == pytest.approx(
+        -np.logaddexp.reduce(logs, axis=0), rel=1e-9, abs=1e-9
+    )
+
+
+def test_log_density_is_that_of_a_gaussian():
+    """Whitened by a Cholesky factor; determinants from there too."""
+    one = learn_mixture([striped(1, COLOURS[1])], MARKED).components[0]
+    colours = np.random.default_rng(5).uniform(0, 255, (50, 3))
+    root = np.linalg.cholesky(np.array(one.covariance))
+    white = np.linalg.solve(root, (colours - np.array(one.mean)).T)
+    peak = math.log(one.weight) - 1.5 * math.log(2.0 * math.pi) - np.log(np.diag(root)).sum()
+    assert log_density(colours, one) == pytest.approx(peak - 0.5 * (white**2).sum(axis=0))
