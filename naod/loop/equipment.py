@@ -161,9 +161,13 @@ class Equipment:
         return locate(frame.yuyv, blob, self.shape, self.camera, estimator, near)
 
     def _segmenter_for(self, model: ColourModel) -> Segmenter:
-        if self._segmenter is None or self._segmenter[0] is not model:
+        if self._segmenter is None:
             size = (self.camera.width, self.camera.height)
             self._segmenter = (model, Segmenter(model, self.config.segmentation, size))
+        elif self._segmenter[0] is not model:
+            # in changing light there is another every few seconds
+            self._segmenter[1].take(model)
+            self._segmenter = (model, self._segmenter[1])
         return self._segmenter[1]
 
 

@@ -32,7 +32,8 @@ RATE_STD = 0.02
 LOOK_STD = 0.04
 """Of one look's logarithm: shading, another side, what the blur mixes in."""
 GATE = 3.0
-"""Standard deviations beyond which a look is of something else."""
+"""Standard deviations beyond which a look is of something else; that widens only with time, in
+doubt too: what comes before the object for some seconds is not taken for it in another light."""
 STD_MAX = 0.15
 """However long nothing was seen, no greater change is believed at once."""
 LOG_MAX = 0.5
@@ -107,8 +108,6 @@ def followed(drift: Drift, colour: NDArray[np.float64] | None, stamp_ns: int) ->
         mean = (np.array(drift.normal) * drift.looks + colour) / (drift.looks + 1)
         return replace(drift, normal=tuple(mean.tolist()), looks=drift.looks + 1)
     variance = min(drift.variance + RATE_STD**2 * passed, STD_MAX**2)
-    if drift.doubtful:
-        variance = STD_MAX**2
     change = math.log(colour[0] / drift.normal[0]) - drift.log
     hue = colour[1:] / colour[0] - np.array(drift.normal[1:]) / drift.normal[0]
     agrees = change**2 <= GATE**2 * (variance + LOOK_STD**2) and np.abs(hue).max() <= HUE_MAX

@@ -66,16 +66,22 @@ def test_something_else_is_not_followed_and_soon_doubted(other):
     after = run([other] * 8, before, begin_s=6.0)
     assert after.log == pytest.approx(before.log, abs=0.01)
     assert not after.doubtful
-    hue_changed = abs(other[2] / other[0] - RED[2] / RED[0]) + abs(
-        other[1] / other[0] - RED[1] / RED[0]
-    )
     later = run([other] * 60, after, begin_s=7.0)
-    if hue_changed > 0.1:
-        assert later.doubtful
-        assert later.trust < DOUBT_BELOW
-        assert later.log == pytest.approx(before.log, abs=0.01)
+    assert later.doubtful
+    assert later.trust < DOUBT_BELOW
+    assert later.log == pytest.approx(before.log, abs=0.01)
     back = run(light_from(1.0, 100), later, begin_s=14.0)
     assert not back.doubtful
+
+
+def test_a_lamp_switched_off_is_doubted_first_and_believed_within_a_minute():
+    before = run(light_from(1.0, 60))
+    doubted = run([RED * 0.75] * 100, before, begin_s=6.0)
+    assert doubted.doubtful
+    assert doubted.log == pytest.approx(before.log, abs=0.01)
+    believed = run([RED * 0.75] * 500, doubted, begin_s=16.0)
+    assert not believed.doubtful
+    assert believed.log == pytest.approx(math.log(0.75), abs=0.05)
 
 
 def test_it_never_goes_farther_than_it_may_and_says_so():
