@@ -19,25 +19,32 @@ from numpy.typing import NDArray
 
 from naod.config import SegmentationConfig
 from naod.files import write_whole
-from naod.finding.find import Scored, scored_groups
+from naod.finding.find import Expected, Scored, scored_groups
 from naod.finding.presence import CASES, TERMS, WEIGHTS, terms
+from naod.finding.regions import cores_of, regions_of
 from naod.finding.regression import fit_logistic, sigmoid
 from naod.finding.rooms import SIZE, Room, RoomSpec, Thing, View
 from naod.perception.colour_model import Region
 from naod.perception.learning import KINDS, learn_model
-from naod.perception.segmenter import Segmenter
-from naod.pose.objects import ObjectShape
+from naod.perception.segmenter import Segmentation, Segmenter
 
 Floats = NDArray[np.float64]
 
 THINGS: tuple[Thing, ...] = ("can", "ribbon", "board")
-LEARN, UNSEEN = range(100, 136), range(300, 324)
-VIEWS = 14
+LEARN, UNSEEN = range(100, 148), range(300, 312)
+VIEWS = 10
+SHOWN_SEEDS = (0, 1)
+"""Rooms in which the colours are learnt, in turn."""
+
 LIGHTS = (0.6, 0.8, 1.0, 1.3, 1.5)
 OTHERS = (0, 0, 0, 1, 2, 3)
 
 IS_IT, IS_NOT = 0.6, 0.4
 """Overlap of hulls above which a group is the object, and below which it is not."""
+
+MIDDLE, GLIMPSE, WITHIN = 0.3, 0.05, 0.9
+"""So much overlap is enough of a group that lies within the object, as blur leaves its middle; with
+less, or in pieces beside a ribbon, it is a matter of taste, down to a glimpse."""
 
 AGAINST = 0.1
 """How much a group counts that would not have been chosen."""
@@ -47,16 +54,21 @@ HEADER = """# Log-odds that a group of regions is the object; see naod/finding/p
 """
 
 ALIKE = 0.25
-"""How much a cut region counts in a room with other things of the object's colour."""
+"""How much a whole region counts in a room with other things of the object's very colour: many of
+them say nothing of colours."""
 
-SIGNS = {"colour": 1, "ring": -1, "lack": -1, "gap": -1, "aspect": -1, "turn": -1}
+MISTAKEN = 2.0
+"""How much a thing of another colour counts whose shape is known not to be the object's."""
+
+SIGNS = {"colour": 1, "ring": -1, "lack": -1, "gap": -1, "aspect": -1, "turn": -1, "pale": -1}
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
     """A group of regions. `picture` tells those of one picture; `overlap` is that of hulls.
 
-    `alike`: other things of the object's colour stand in the room.
+    `within`: share of the group's hull that is in the object's. `alike`: other things of the
+    object's colour stand in the room. `banded`: a ribbon parts the object's colour.
     """
 
     picture: int
@@ -64,12 +76,17 @@ class Sample:
     row: Floats
     offset: float
     overlap: float
+    within: float
     alike: bool
+    banded: bool
 
     @property
     def told(self) -> bool | None:
         """Whether it is the object; None if that is a matter of taste."""
-        return True if self.overlap > IS_IT else False if self.overlap < IS_NOT else None
+        inside = self.within > WITHIN
+        if self.overlap > (MIDDLE if inside and not self.banded else IS_IT):
+            return True
+        return False if self.overlap < (GLIMPSE if inside else IS_NOT) else None
 
 
 def specs(seeds: Sequence[int]) -> list[RoomSpec]:
@@ -110,30 +127,42 @@ class Learnt:
 
 def samples_of(room: Room, views: Sequence[View], learnt: Learnt, first: int) -> Iterator[Sample]:
     """Every group in every view, with the shape known and unknown; pictures count from `first`."""
-    for view in views:
+    for number, view in enumerate(views):
         for segmenter in learnt.segmenters[room.spec.thing]:
             segmentation = segmenter.segment(view.yuyv)
             truth = None if view.mask is None else _hull(_reduced(view.mask, segmentation.scale))
-            shapes: tuple[ObjectShape | None, ...] = (room.shape, None)
-            for shape in shapes:
-                camera = None if shape is None else room.camera
-                found = scored_groups(segmentation, shape, camera, None, learnt.settings.pixels_min)
+            # the loop knows the blur while it turns its head, not always
+            blur_px = view.blur_px if number % 2 else 0.0
+            known = Expected(room.shape, room.camera, None, blur_px)
+            for expected in (known, Expected()):
                 first += 1
-                if found is not None:
-                    yield from _samples(found, truth, shape is not None, first, room.spec.others)
+                for found in _scored(segmentation, expected, learnt.settings.pixels_min):
+                    yield from _samples(found, truth, first, room.spec)
+
+
+def _scored(segmentation: Segmentation, expected: Expected, pixels_min: int) -> Iterator[Scored]:
+    regions = regions_of(segmentation)
+    for looked_at in (regions, cores_of(regions)) if expected.shape else (regions,):
+        found = scored_groups(segmentation, looked_at, expected, pixels_min)
+        if found is not None:
+            yield found
 
 
 def _samples(
-    found: Scored, truth: NDArray[np.bool_] | None, known: bool, picture: int, others: int
+    found: Scored, truth: NDArray[np.bool_] | None, picture: int, spec: RoomSpec
 ) -> Iterator[Sample]:
     rows = terms(found.measures)
     for k in range(len(rows)):
-        overlap = 0.0
+        overlap = within = 0.0
         if truth is not None:
-            own = _hull(found.wanted(k)[found.labels])
-            overlap = np.count_nonzero(own & truth) / np.count_nonzero(own | truth)
-        case = ("cut" if found.cuts[k] else "whole") if known else "unknown"
-        yield Sample(picture, case, rows[k], float(found.offsets[k]), overlap, others > 0)
+            own = _hull(found.wanted(k)[found.regions.labels])
+            shared = np.count_nonzero(own & truth)
+            overlap = shared / np.count_nonzero(own | truth)
+            within = shared / np.count_nonzero(own)
+        case = ("cut" if found.cuts[k] else "whole") if found.known else "unknown"
+        offset = float(found.offsets[k])
+        kinds = (spec.others > 0, spec.thing == "ribbon")
+        yield Sample(picture, case, rows[k], offset, overlap, within, *kinds)
 
 
 def fitted(samples: Sequence[Sample]) -> dict[str, Floats]:
@@ -156,8 +185,7 @@ def chosen_of(samples: Sequence[Sample], weights: dict[str, Floats]) -> list[Sam
 def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Floats:
     """Weights of a case; before anything was chosen, objects and the rest count alike.
 
-    Things of one colour cannot be told apart without a shape: those are left out there. Cut off
-    they hardly can: those count less, or whatever the border cuts would be lost.
+    Things of one colour cannot be told apart without a shape: those are left out there.
     """
     kept = [s for s in samples if s.case == case and s.told is not None]
     kept = [s for s in kept if case != "unknown" or not s.alike]
@@ -167,13 +195,19 @@ def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Float
         counts *= len(kept)
     else:
         counts = np.array([1.0 if s.told or id(s) in chosen else AGAINST for s in kept])
-    counts *= [ALIKE if case == "cut" and s.alike else 1.0 for s in kept]
+    counts *= [_importance(s) for s in kept]
     signs = np.array([SIGNS.get(name, 0) for name in TERMS], dtype=np.float64)
     rows = np.array([s.row for s in kept])
     if case == "unknown":
         # the things rendered are convex, what people look for need not be
         rows[:, TERMS.index("lack")] = 0.0
     return fit_logistic(rows, told, counts, signs)
+
+
+def _importance(sample: Sample) -> float:
+    if sample.alike:
+        return ALIKE if sample.case == "whole" else 1.0
+    return 1.0 if sample.told or sample.case == "unknown" else MISTAKEN
 
 
 def reliability(samples: Sequence[Sample], weights: dict[str, Floats]) -> tuple[float, Floats]:
@@ -206,11 +240,12 @@ def _hull(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def gathered(seeds: Sequence[int], views: int, folder: Path) -> list[Sample]:
     """Samples of the rooms of these seeds, all colours learnt in one other room."""
-    learnt = Learnt(folder)
+    learnt = [Learnt(folder, seed) for seed in SHOWN_SEEDS]
     samples: list[Sample] = []
     for n, spec in enumerate(specs(seeds)):
         room = Room(spec, folder)
-        samples += samples_of(room, list(room.views(views)), learnt, 1000 * n)
+        shown = learnt[n // 2 % len(learnt)]
+        samples += samples_of(room, list(room.views(views)), shown, 1000 * n)
     return samples
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from naod.finding.measure import METRE, X, Y
@@ -55,13 +56,10 @@ def agreement(
     _, half_width, half_height = figures(shape)
     share = 2.0 * max(half_width, half_height) / float(point[2])
     area = camera.width / camera.fx * camera.height / camera.fy
-    out = np.empty(len(measures))
-    for k in range(len(measures)):
-        sigma = share * (CUT_SIGMA if cuts[k] else CENTRE_SIGMA) + grain_px / camera.fx
-        sizes = (sigma, sigma, 1.0 if cuts[k] else SIZE_SIGMA)
-        density = _gaussian(seen[k] - expected, spread + np.diag(np.square(sizes)))
-        out[k] = math.log(kept * density * area * _DEPTHS + 1.0 - kept)
-    return out
+    middle = share * np.where(cuts > 0, CUT_SIGMA, CENTRE_SIGMA) + grain_px / camera.fx
+    sizes = np.column_stack([middle, middle, np.where(cuts > 0, 1.0, SIZE_SIGMA)])
+    densities = gaussians(seen - expected, spread, sizes)
+    return np.log(kept * area * _DEPTHS * densities + (1.0 - kept))
 
 
 _DEPTHS = math.log(FARTHEST_M / NEAREST_M)
@@ -79,6 +77,21 @@ def _expected(point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
     return np.array([x / z, y / z, math.log(z)]), J @ covariance @ J.T
 
 
-def _gaussian(gap: Floats, covariance: Floats) -> float:
-    exponent = min(0.5 * float(gap @ np.linalg.solve(covariance, gap)), 700.0)
-    return math.exp(-exponent) / math.sqrt((2.0 * math.pi) ** 3 * float(np.linalg.det(covariance)))
+@njit(cache=True, nogil=True)
+def gaussians(gaps: Floats, spread: Floats, sigmas: Floats) -> Floats:
+    """Densities (m,) of gaps (m, 3) under covariances spread (3, 3) + diag(sigmas[k]^2)."""
+    out = np.empty(len(gaps))
+    for k in range(len(gaps)):
+        gap, sigma = gaps[k], sigmas[k]
+        # Cholesky's factor, and the gap solved by it
+        a = math.sqrt(spread[0, 0] + sigma[0] ** 2)
+        b, d = spread[1, 0] / a, spread[2, 0] / a
+        c = math.sqrt(spread[1, 1] + sigma[1] ** 2 - b * b)
+        e = (spread[2, 1] - d * b) / c
+        f = math.sqrt(spread[2, 2] + sigma[2] ** 2 - d * d - e * e)
+        x = gap[0] / a
+        y = (gap[1] - b * x) / c
+        z = (gap[2] - d * x - e * y) / f
+        exponent = min(0.5 * (x * x + y * y + z * z), 700.0)
+        out[k] = math.exp(-exponent) / ((2.0 * math.pi) ** 1.5 * a * c * f)
+    return out

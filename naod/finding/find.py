@@ -13,17 +13,20 @@ from naod.finding.expectation import agreement
 from naod.finding.groups import groups_of
 from naod.finding.measure import NO_SHAPE, measure_groups
 from naod.finding.presence import colour_and_shape, plausibility, probability
+from naod.finding.regions import Regions, cores_of, regions_of
 from naod.geometry.camera import PinholeCamera
-from naod.perception.blob import Blob, blob_of, evidence, find_blob
-from naod.perception.components import AREA, SUM_X, SUM_Y, components
-from naod.perception.energy import STEPS
+from naod.perception.blob import Blob, blob_of, find_blob
+from naod.perception.components import AREA, SUM_X, SUM_Y
 from naod.perception.segmenter import Segmentation
 from naod.pose.contour import figures
 from naod.pose.objects import ObjectShape
 from naod.pose.prior import Prior
 
-SURE_STEPS = 3 * STEPS
-"""What a pixel says where nothing but its label is known."""
+SURE_ODDS = 3.0
+"""Log-odds from which nobody looks further."""
+
+CORE_ODDS = 0.5
+"""By which a core must be likelier than any whole region to be taken for the object."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +47,10 @@ def find_object(
     camera: PinholeCamera | None,
     prior: Prior | None,
     settings: SegmentationConfig,
+    blur_px: float = 0.0,
 ) -> Candidate | None:
     """The object in a picture; None when it is more likely not there (`presence_min`)."""
-    best = likeliest(segmentation, shape, camera, prior, settings.pixels_min)
+    best = likeliest(segmentation, shape, camera, prior, settings.pixels_min, blur_px)
     return best if best is not None and best.probability >= settings.presence_min else None
 
 
@@ -56,23 +60,34 @@ def likeliest(
     camera: PinholeCamera | None,
     prior: Prior | None,
     pixels_min: int,
+    blur_px: float = 0.0,
 ) -> Candidate | None:
     """What is likeliest the object, however unlikely; None where nothing has its colour.
 
     shape and camera: without both, colour alone decides. prior: where the object is expected, which
-    counts for or against. Cost does not grow with clutter: only some regions are looked at.
+    counts for or against. blur_px: how far it moves through the full picture during the exposure, 0
+    where nobody knows. Cost does not grow with clutter: only some regions are looked at, and their
+    cores only where no region is surely it.
     """
-    scored = scored_groups(segmentation, shape, camera, prior, pixels_min)
+    regions = regions_of(segmentation)
+    expected = Expected(shape, camera, prior, blur_px)
+    scored = scored_groups(segmentation, regions, expected, pixels_min)
     if scored is None:
         return None
-    odds = colour_and_shape(scored.measures, scored.cuts, scored.known) + scored.offsets
-    best = int(np.argmax(odds))
+    best, odds = scored.best()
+    if odds < SURE_ODDS and scored.known:
+        cores = scored_groups(segmentation, cores_of(regions), expected, pixels_min)
+        if cores is not None and cores.best()[1] > odds + CORE_ODDS:
+            scored = cores
+            best, odds = scored.best()
     wanted = scored.wanted(best)
     parts = int(np.count_nonzero(wanted))
-    blob = _foremost(segmentation, scored, wanted, pixels_min) if parts == 1 else None
+    blob = None
+    if parts == 1 and scored.regions is regions:
+        blob = _foremost(segmentation, scored, wanted, pixels_min)
     if blob is None:
-        blob = blob_of(scored.labels, scored.table, wanted, segmentation.scale)
-    return Candidate(blob, probability(float(odds[best])), parts)
+        blob = blob_of(scored.regions.labels, scored.regions.table, wanted, segmentation.scale)
+    return Candidate(blob, probability(odds), parts)
 
 
 def _foremost(
@@ -80,7 +95,7 @@ def _foremost(
 ) -> Blob | None:
     """The region with most of the colour, which is measured already, if it is the one wanted."""
     blob = find_blob(segmentation, pixels_min)
-    row, grain = scored.table[wanted[1:]][0], segmentation.scale
+    row, grain = scored.regions.table[wanted[1:]][0], segmentation.scale
     if blob is None or blob.area_px != row[AREA] * grain**2:
         return None
     x, y = ((float(row[k]) / float(row[AREA]) + 0.5) * grain - 0.5 for k in (SUM_X, SUM_Y))
@@ -89,15 +104,24 @@ def _foremost(
 
 
 @dataclass(frozen=True, slots=True)
+class Expected:
+    """What is looked for, from where, where it may be, and how much it is smeared."""
+
+    shape: ObjectShape | None = None
+    camera: PinholeCamera | None = None
+    prior: Prior | None = None
+    blur_px: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Scored:
     """Groups of regions that may be the object, and what speaks for each.
 
-    `labels` and `table` as `components` gives, `chosen` and `groups` as `groups_of`, `measures`
-    and `cuts` as `measure_groups`. `offsets`: log-odds (m,) that were not fitted to pictures.
+    `chosen` and `groups` as `groups_of`, `measures` and `cuts` as `measure_groups`. `offsets`:
+    log-odds (m,) that were not fitted to pictures.
     """
 
-    labels: NDArray[np.int32]
-    table: NDArray[np.int64]
+    regions: Regions
     chosen: NDArray[np.int64]
     groups: NDArray[np.int64]
     measures: NDArray[np.float64]
@@ -107,44 +131,45 @@ class Scored:
 
     def wanted(self, group: int) -> NDArray[np.bool_]:
         """Whether each label is of a group."""
-        out = np.zeros(len(self.table) + 1, dtype=np.bool_)
+        out = np.zeros(len(self.regions.table) + 1, dtype=np.bool_)
         for n, row in enumerate(self.chosen):
             out[1 + row] = bool(self.groups[group] >> n & 1)
         return out
 
+    def best(self) -> tuple[int, float]:
+        """The likeliest group and its log-odds."""
+        odds = colour_and_shape(self.measures, self.cuts, self.known) + self.offsets
+        best = int(np.argmax(odds))
+        return best, float(odds[best])
+
 
 def scored_groups(
-    segmentation: Segmentation,
-    shape: ObjectShape | None,
-    camera: PinholeCamera | None,
-    prior: Prior | None,
-    pixels_min: int,
+    segmentation: Segmentation, regions: Regions, expected: Expected, pixels_min: int
 ) -> Scored | None:
     """Everything that may be the object; None where nothing has its colour."""
-    labels, table = components(segmentation.mask)
-    if not len(table):
-        return None
-    differences = _differences(segmentation)
-    told = evidence(labels, differences, len(table))
+    shape, camera, grain = expected.shape, expected.camera, segmentation.scale
     known = shape is not None and camera is not None
-    chosen, groups = groups_of(table, told, pixels_min, known)
+    if not len(regions.table):
+        return None
+    chosen, groups = groups_of(regions.table, regions.told, pixels_min, known)
     if not len(groups):
         return None
     sizes = _figures(shape if known else None)
-    measures, cuts = measure_groups(labels, table, differences, chosen, groups, sizes)
+    measures, cuts = measure_groups(
+        regions.labels,
+        regions.table,
+        regions.differences,
+        chosen,
+        groups,
+        sizes,
+        expected.blur_px / grain,
+    )
     offsets = np.zeros(len(groups))
     if shape is not None and camera is not None:
-        grain = segmentation.scale
         offsets += plausibility(measures, math.sqrt(camera.fx * camera.fy) / grain)
-        if prior is not None:
-            offsets += agreement(measures, cuts, grain, shape, camera, prior)
-    return Scored(labels, table, chosen, groups, measures, cuts, offsets, known)
-
-
-def _differences(segmentation: Segmentation) -> NDArray[np.int32]:
-    if segmentation.differences is not None:
-        return segmentation.differences
-    return np.where(segmentation.mask > 0, np.int32(-SURE_STEPS), np.int32(SURE_STEPS))
+        if expected.prior is not None:
+            offsets += agreement(measures, cuts, grain, shape, camera, expected.prior)
+    return Scored(regions, chosen, groups, measures, cuts, offsets, known)
 
 
 def _figures(shape: ObjectShape | None) -> tuple[int, float, float]:

@@ -35,12 +35,13 @@ NO_SHAPE, CYLINDER, RECTANGLE = range(3)
 CLIP = 6.0
 """Nat: one pixel says no more than this for or against, its colour model may be wrong."""
 
-COLOUR, RING, PIXELS, FILL, GAP, ASPECT, TURN, ON_SIDE, METRE, X, Y = range(11)
-MEASURES = 11
+COLOUR, RING, PIXELS, FILL, GAP, ASPECT, TURN, ON_SIDE, METRE, X, Y, CORE = range(12)
+MEASURES = 12
 """Columns: mean log-likelihood ratio (nat, positive = object) of the group's pixels inside the
 outline, and of all around it; mask pixels inside; share of those that are the group's; mean
 distance of hull and outline in tolerances; misfit of proportions in tolerances; a rectangle's turn
-out of the picture's plane (rad); 1 where it lies; mask pixels per metre; middle of the box."""
+out of the picture's plane (rad); 1 where it lies; mask pixels per metre; middle of the box; ratio
+(nat) that a quarter of the pixels exceed, which blur leaves alone as long as it is short."""
 
 USUAL_PIXELS = 160 * 120
 """Pixels are counted as of a mask of this size: what matters is their share of the picture."""
@@ -48,6 +49,12 @@ USUAL_PIXELS = 160 * 120
 GAP_PX, GAP_SHARE = 0.5, 0.02
 ASPECT_PX, ASPECT_SHARE = 1.5, 0.06
 """Tolerances: of a hull's and a box's sides, in mask pixels and in shares of the size."""
+
+GAP_BLUR, ASPECT_BLUR = 0.1, 0.25
+"""Of the length of the motion blur that adds to them: a smeared side may count or not."""
+
+_BINS_A_NAT = 8
+_BINS = int(CLIP) * _BINS_A_NAT
 
 
 @njit(cache=True, nogil=True)
@@ -101,16 +108,24 @@ def _colour_inside(
     out: NDArray[np.float64],
 ) -> None:
     inside, own, many = 0.0, 0, 0
+    counts = np.zeros(_BINS, dtype=np.int64)
     for i in range(labels.shape[0]):
         first, last = _columns(spans[i], labels.shape[1])
         many += last - first
         for j in range(first, last):
             if wanted[labels[i, j]]:
-                inside += _clipped(differences[i, j])
+                ratio = _clipped(differences[i, j])
+                inside += ratio
                 own += 1
+                counts[min(max(int(ratio * _BINS_A_NAT), 0), _BINS - 1)] += 1
     out[COLOUR] = inside / max(own, 1)
     out[PIXELS] = many * (USUAL_PIXELS / labels.size)
     out[FILL] = own / max(many, 1)
+    surer, level = 0, _BINS
+    while level > 0 and 4 * surer < own:
+        level -= 1
+        surer += counts[level]
+    out[CORE] = (level + 0.5) / _BINS_A_NAT
 
 
 @njit(cache=True, nogil=True)
@@ -154,6 +169,7 @@ def _shaped(
     box: NDArray[np.float64],
     shape: tuple[int, float, float],
     cut: int,
+    blur: float,
     outline: Points,
     out: NDArray[np.float64],
 ) -> int:
@@ -176,7 +192,8 @@ def _shaped(
             found[SCALE] = max(box[4] / (2.0 * half_width), box[5] / (2.0 * half_height))
             count = 0
     across, along = max(box[4], 1.0), max(box[5], 1.0)
-    allowed = math.hypot(ASPECT_PX / across, ASPECT_PX / along) + ASPECT_SHARE
+    unsure = ASPECT_PX + ASPECT_BLUR * blur
+    allowed = math.hypot(unsure / across, unsure / along) + ASPECT_SHARE
     out[ASPECT] = found[MISFIT] / allowed
     out[TURN], out[ON_SIDE], out[METRE] = found[TURN_AWAY], found[LYING], found[SCALE]
     if count == 0:
@@ -194,11 +211,13 @@ def measure(
     differences: NDArray[np.int32],
     shape: tuple[int, float, float],
     cut: int,
+    blur: float,
     out: NDArray[np.float64],
 ) -> None:
     """Measures (MEASURES,) of the regions with `wanted[label]`.
 
-    shape: kind, half width (or radius) and half height in m. cut: as in `silhouette`.
+    shape: kind, half width (or radius) and half height in m. cut: as in `silhouette`. blur: its
+    length in mask pixels, 0 where nobody knows.
     """
     height, width = labels.shape
     top, bottom, left, right = height, -1, width, -1
@@ -213,7 +232,7 @@ def measure(
     box = np.empty(6)
     smallest_box(hull, corners, box)
     outline = np.empty((max(corners, OUTLINE_MAX), 2))
-    count = _shaped(hull, corners, box, shape, cut, outline, out)
+    count = _shaped(hull, corners, box, shape, cut, blur, outline, out)
     spans, whole = np.empty((height, 2)), np.empty((height, 2))
     _spans(hull, corners, whole)
     _spans(outline, count, spans)
@@ -222,7 +241,8 @@ def measure(
     _colour_inside(labels, wanted, differences, spans, out)
     _colour_around(differences, spans, ring, out)
     around = 2.0 * (box[4] + box[5])
-    out[GAP] = _difference(spans, whole) / around / (GAP_PX + GAP_SHARE * least)
+    out[GAP] = _difference(spans, whole) / around
+    out[GAP] /= GAP_PX + GAP_SHARE * least + GAP_BLUR * blur
     out[X], out[Y] = box[0], box[1]
 
 
@@ -246,8 +266,12 @@ def measure_groups(
     chosen: NDArray[np.int64],
     groups: NDArray[np.int64],
     shape: tuple[int, float, float],
+    blur: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Measures (m, MEASURES) of groups as `groups_of` gives them, and the borders that cut each."""
+    """Measures (m, MEASURES) of groups as `groups_of` gives them, and the borders that cut each.
+
+    blur: length of the motion blur in mask pixels, 0 where nobody knows.
+    """
     out = np.zeros((len(groups), MEASURES))
     cuts = np.zeros(len(groups), dtype=np.int64)
     wanted = np.zeros(table.shape[0] + 1, dtype=np.bool_)
@@ -256,5 +280,5 @@ def measure_groups(
         for n in range(len(chosen)):
             wanted[chosen[n] + 1] = bool(groups[g] >> n & 1)
         cuts[g] = _cut_of(table, wanted, *labels.shape)
-        measure(labels, table, wanted, differences, shape, cuts[g], out[g])
+        measure(labels, table, wanted, differences, shape, cuts[g], blur, out[g])
     return out, cuts

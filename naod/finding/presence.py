@@ -7,17 +7,20 @@ object can be, that it rarely lies, and where it was last seen.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from pathlib import Path
 
 import msgspec
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from naod.files import read_toml
 from naod.finding.measure import (
     ASPECT,
     COLOUR,
+    CORE,
     FILL,
     GAP,
     METRE,
@@ -42,6 +45,13 @@ FILL_ENOUGH, FILL_TOLERANCE = 0.7, 0.1
 TURN_FREE = 0.5
 """Rad from which a board's turn counts: it is shown from the front, and seen from about there."""
 
+RING_FREE = -1.0
+"""Nat: what is around counts when it is hardly less like the object than like anything else."""
+
+PALE_FROM = 5.0
+"""Nat: a core surer than that is of the object's very colour; what lacks counts squared, for other
+things near that colour stay below while blur leaves the object's own."""
+
 TOLERANCES_MAX = 6.0
 PIXELS_RANGE = (60.0, 2000.0)
 """Fewer do not count against it: it may be far away. More do not count for it."""
@@ -63,10 +73,12 @@ class CaseWeights(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     gap: float = 0.0
     aspect: float = 0.0
     turn: float = 0.0
+    pale: float = 0.0
 
 
 CASES = ("whole", "cut", "unknown")
 TERMS = CaseWeights.__struct_fields__
+_TERMS = len(TERMS)
 
 
 class Weights(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -84,22 +96,23 @@ def fitted_weights() -> dict[str, Floats]:
     return {case: np.array(msgspec.structs.astuple(getattr(weights, case))) for case in CASES}
 
 
+@njit(cache=True, nogil=True)
 def terms(measures: Floats) -> Floats:
     """What the weights are multiplied with, (m, len(TERMS)), from measures (m, MEASURES)."""
-    lack = np.maximum(FILL_ENOUGH - measures[:, FILL], 0.0) / FILL_TOLERANCE
-    pixels = np.log(np.clip(measures[:, PIXELS], *PIXELS_RANGE) / PIXELS_MIDDLE)
-    return np.column_stack(
-        [
-            np.ones(len(measures)),
-            measures[:, COLOUR],
-            measures[:, RING],
-            pixels,
-            np.minimum(lack**2, TOLERANCES_MAX),
-            np.minimum(measures[:, GAP], TOLERANCES_MAX),
-            np.minimum(np.maximum(measures[:, ASPECT] - 0.5, 0.0), TOLERANCES_MAX),
-            np.maximum(measures[:, TURN] - TURN_FREE, 0.0),
-        ]
-    )
+    out = np.empty((measures.shape[0], _TERMS))
+    for row, line in zip(measures, out):  # noqa: B905 (numba knows no strict)
+        lack = max(FILL_ENOUGH - row[FILL], 0.0) / FILL_TOLERANCE
+        pixels = min(max(row[PIXELS], PIXELS_RANGE[0]), PIXELS_RANGE[1])
+        line[0] = 1.0
+        line[1] = row[COLOUR]
+        line[2] = max(row[RING] - RING_FREE, 0.0)
+        line[3] = math.log(pixels / PIXELS_MIDDLE)
+        line[4] = min(lack**2, TOLERANCES_MAX)
+        line[5] = min(row[GAP], TOLERANCES_MAX)
+        line[6] = min(max(row[ASPECT] - 0.5, 0.0), TOLERANCES_MAX)
+        line[7] = max(row[TURN] - TURN_FREE, 0.0)
+        line[8] = max(PALE_FROM - row[CORE], 0.0) ** 2
+    return out
 
 
 def colour_and_shape(measures: Floats, cuts: NDArray[np.int64], known: bool) -> Floats:
@@ -108,6 +121,8 @@ def colour_and_shape(measures: Floats, cuts: NDArray[np.int64], known: bool) -> 
     rows = terms(measures)
     if not known:
         return np.asarray(rows @ weights["unknown"])
+    if not cuts.any():
+        return np.asarray(rows @ weights["whole"])
     return np.where(cuts > 0, rows @ weights["cut"], rows @ weights["whole"])
 
 
@@ -116,14 +131,17 @@ def distance_m(measures: Floats, focal_px: float) -> Floats:
     return np.asarray(focal_px / np.maximum(measures[:, METRE], 1e-9))
 
 
+@njit(cache=True, nogil=True)
 def plausibility(measures: Floats, focal_px: float) -> Floats:
     """Log-odds (m,), never positive: where no object is looked for, and that it rarely lies."""
-    distance = distance_m(measures, focal_px)
-    near, far = np.log(NEAREST_M / distance), np.log(distance / FARTHEST_M)
-    beyond = np.maximum(np.maximum(near, far), 0.0) / BEYOND
-    return np.asarray(-0.5 * beyond**2 - LYING_COST * measures[:, ON_SIDE])
+    out = np.empty(measures.shape[0])
+    for k in range(out.size):
+        distance = focal_px / max(measures[k, METRE], 1e-9)
+        beyond = max(math.log(NEAREST_M / distance), math.log(distance / FARTHEST_M), 0.0) / BEYOND
+        out[k] = -0.5 * beyond**2 - LYING_COST * measures[k, ON_SIDE]
+    return out
 
 
 def probability(log_odds: float) -> float:
     """Of log-odds."""
-    return float(1.0 / (1.0 + np.exp(-np.clip(log_odds, -50.0, 50.0))))
+    return 1.0 / (1.0 + math.exp(-min(max(log_odds, -50.0), 50.0)))

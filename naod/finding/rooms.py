@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.backends import OpenOptions, open_studio
-from hal.scenario import Scenario, SceneSection, ThingSection
+from hal.scenario import CameraSection, Scenario, SceneSection, ThingSection
 from hal.simulation import Studio
 from naod.geometry.camera import PinholeCamera, nominal_camera
 from naod.geometry.transforms import Matrix
@@ -23,7 +23,10 @@ from naod.pose.objects import ObjectShape, shape_of
 
 Thing = Literal["can", "ribbon", "board"]
 
-SIZE = (640, 480)
+SIZE = (320, 240)
+NOISE_STD = 1.0
+"""Half of the camera's at twice the size: so many more pixels make one of the mask."""
+
 EYE_M = 0.47
 TABLE_TOP_M = 0.40
 EXPOSURES_S = (0.0, 0.0, 0.010, 0.020, 0.033)
@@ -66,10 +69,14 @@ class RoomSpec(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A picture (H, W, 2) YUYV and the object's mask (H, W), None where it is not there."""
+    """A picture (H, W, 2) YUYV and the object's mask (H, W), None where it is not there.
+
+    `blur_px`: how far everything moved during the exposure, in its pixels.
+    """
 
     yuyv: NDArray[np.uint8]
     mask: NDArray[np.uint8] | None
+    blur_px: float = 0.0
 
 
 class Room:
@@ -101,17 +108,21 @@ class Room:
         rng = np.random.default_rng([self.spec.seed, 31])
         for n in range(count):
             poses = self._poses(rng)
-            yuyv = self._studio.frame_at(poses[0], poses, 1000 * self.spec.seed + n)
-            if not self.spec.present:
-                yield View(yuyv, None)
-                continue
-            mask = self._studio.mask_at(poses[0], poses)
-            distance = float(np.linalg.norm(poses[0][:3, 3] - self._studio.T_world_object[:3, 3]))
-            seen = np.count_nonzero(mask) / self._whole(distance)
-            if seen > GLIMPSE_SHARE:
-                yield View(yuyv, mask)
-            elif not mask.any():
-                yield View(yuyv, None)
+            view = self._view(poses, 1000 * self.spec.seed + n)
+            if view is not None:
+                yield view
+
+    def _view(self, poses: NDArray[np.float64], noise_seed: int) -> View | None:
+        """None where only a glimpse of the object is in the picture."""
+        yuyv = self._studio.frame_at(poses[0], poses, noise_seed)
+        blur_px = self.camera.fx * _angle(poses[0, :3, :3].T @ poses[-1, :3, :3])
+        if not self.spec.present:
+            return View(yuyv, None, blur_px)
+        mask = self._studio.mask_at(poses[0], poses)
+        distance = float(np.linalg.norm(poses[0][:3, 3] - self._studio.T_world_object[:3, 3]))
+        if np.count_nonzero(mask) > GLIMPSE_SHARE * self._whole(distance):
+            return View(yuyv, mask, blur_px)
+        return None if mask.any() else View(yuyv, None, blur_px)
 
     def _whole(self, distance_m: float) -> float:
         """Pixels of the object seen from the front."""
@@ -142,6 +153,10 @@ def _step(T: Matrix, turn: NDArray[np.float64]) -> Matrix:
     out = T.copy()
     out[:3, :3] = T[:3, :3] @ _turned(turn)
     return out
+
+
+def _angle(rotation: NDArray[np.float64]) -> float:
+    return float(np.linalg.norm(cv2.Rodrigues(rotation)[0]))
 
 
 def _turned(rotation: NDArray[np.float64]) -> Matrix:
@@ -191,7 +206,8 @@ def _scenario(spec: RoomSpec, folder: Path) -> Scenario:
         others.append(ThingSection(kind=kind, colour=colour, position=place, **sizes))  # type: ignore[arg-type]
     scene = SceneSection(background="clutter", light=spec.light)
     thing = _object(spec, not spec.present, folder)
-    return Scenario(object=thing, scene=scene, distractor=tuple(others))
+    camera = CameraSection(noise_std=NOISE_STD)
+    return Scenario(object=thing, scene=scene, camera=camera, distractor=tuple(others))
 
 
 def _ribbon(folder: Path) -> str:

@@ -108,7 +108,7 @@ class Segmenter:
 
     def _minimise(self, raw: NDArray[np.uint8], sight: Sight) -> tuple[int, int, bool]:
         reduction = self.reduction
-        energy, waves, sight.pixels, sight.points, sight.cut = see(
+        energy, waves, *found = see(
             raw,
             self._kind,
             reduction.block,
@@ -120,6 +120,7 @@ class Segmenter:
             self.beta_steps,
             sight.pixels_min,
         )
+        sight.pixels, sight.points, sight.cut, sight.run_count, sight.regions = found
         return energy, waves, True
 
     def _descend(self, raw: NDArray[np.uint8], sight: Sight) -> tuple[int, int, bool]:
@@ -128,8 +129,9 @@ class Segmenter:
         measure(raw, self._kind, block, entries, self._memory, sight.memory, height, width)
         label_by_singletons(differences, mask)
         sweeps = descend(differences, mask, self.beta_steps, self.settled_steps, self._energies)
-        sight.pixels, sight.points, sight.cut = choose_in_mask(
+        found = choose_in_mask(
             self._memory, sight.memory, height, width, sight.pixels_min, float(block)
         )
+        sight.pixels, sight.points, sight.cut, sight.run_count, sight.regions = found
         last = int(self._energies[sweeps] - self._energies[sweeps - 1])
         return int(self._energies[sweeps]), sweeps, -last < self.settled_steps

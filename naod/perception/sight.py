@@ -35,12 +35,14 @@ from naod.perception.runs import AREA, EVIDENCE, Runs, bytes_of_runs, find_runs,
 @njit(cache=True, nogil=True)
 def _result_in(
     memory: Memory, height: int, width: int
-) -> tuple[NDArray[np.uint8], NDArray[np.int32], Found]:
-    """Labels (h, w), differences (h, w) and box."""
+) -> tuple[NDArray[np.uint8], NDArray[np.int32], Found, Runs]:
+    """Labels (h, w), differences (h, w), box and all regions."""
     mask, at = uint8s(memory, 0, height * width)
     differences, at = int32s(memory, at, height * width)
     found, at = found_in(memory, at, height, width)
-    return mask.reshape((height, width)), differences.reshape((height, width)), found
+    runs, at = runs_in(memory, at, height, width)
+    shape = (height, width)
+    return mask.reshape(shape), differences.reshape(shape), found, runs
 
 
 class Sight:
@@ -48,21 +50,24 @@ class Sight:
 
     `mask` (h, w) uint8, `differences` (h, w) int32, `found`: box of the object among the regions
     that have `pixels_min`; `pixels` it has, 0 if there is none, `points` of its boundary, and the
-    sides of the picture that cut it.
+    sides of the picture that cut it. `runs`: the first `run_count` of them make up the mask, and so
+    many `regions` are in their table.
     """
 
     def __init__(self, height: int, width: int, pixels_min: int) -> None:
-        self.memory = zeroed(5 * height * width + bytes_of_found(height, width) + 2 * LINE)
-        self.mask, self.differences, self.found = _result_in(self.memory, height, width)
+        size = 5 * height * width + bytes_of_found(height, width) + bytes_of_runs(height, width)
+        self.memory = zeroed(size + 2 * LINE)
+        self.mask, self.differences, self.found, self.runs = _result_in(self.memory, height, width)
         self.pixels_min = pixels_min
-        self.pixels = self.points = self.cut = 0
+        self.pixels = self.points = self.cut = self.run_count = self.regions = 0
 
     def holders(self) -> int:
         """References to this memory, its own included."""
         found = self.found
         count = sys.getrefcount(self) + sys.getrefcount(self.mask)
         count += sys.getrefcount(self.differences) + sys.getrefcount(found.corners)
-        return count + sys.getrefcount(found.centre) + sys.getrefcount(found.boundary)
+        count += sys.getrefcount(found.centre) + sys.getrefcount(found.boundary)
+        return count + sys.getrefcount(self.runs)
 
 
 class Sights:
@@ -98,18 +103,17 @@ class Sights:
 @njit(cache=True, nogil=True)
 def _scratch_in(
     memory: Memory, found: Found, height: int, width: int
-) -> tuple[Field, Runs, Box, NDArray[np.uint32], int]:
+) -> tuple[Field, Box, NDArray[np.uint32], int]:
     field, at = field_in(memory, 0, height, width)
-    runs, at = runs_in(memory, at, height, width)
     box, at = box_in(memory, at, found, height, width)
     places, at = uint32s(memory, at, height * width)
-    return field, runs, box, places.reshape((height, width)), at
+    return field, box, places.reshape((height, width)), at
 
 
 def scratch(height: int, width: int, picture_width: int) -> Memory:
     """Memory that pictures of one size are worked on in."""
-    size = bytes_of_field(height, width) + bytes_of_runs(height, width)
-    size += bytes_of_box(height, width) + bytes_of_picture(picture_width)
+    size = bytes_of_field(height, width) + bytes_of_box(height, width)
+    size += bytes_of_picture(picture_width)
     memory = zeroed(size + 4 * height * width + LINE)
     clear(field_in(memory, 0, height, width)[0])
     return memory
@@ -147,10 +151,10 @@ def _choose(
     box: Box,
     pixels_min: int,
     grain_px: float,
-) -> tuple[int, int, int]:
+) -> tuple[int, int, int, int, int]:
     """The box of the region of least difference; its pixels, boundary points and cut sides.
 
-    No pixels: there is no region of `pixels_min`.
+    No pixels: there is no region of `pixels_min`. Then how many runs and regions there are.
     """
     count, regions = find_runs(field.rows, field.words, field.hot, differences, runs)
     chosen, most = 0, -1
@@ -159,12 +163,12 @@ def _choose(
         if line[AREA] >= pixels_min and line[EVIDENCE] > most:
             chosen, most = name, line[EVIDENCE]
     if chosen == 0:
-        return 0, 0, 0
+        return 0, 0, 0, count, regions
     breaks_of_region(runs, count, chosen, box)
     height, width = differences.shape
     extent = runs.table[chosen]
     points, cut = measure_box(box, extent, height, width, grain_px)
-    return extent[AREA], points, cut
+    return extent[AREA], points, cut, count, regions
 
 
 @njit(cache=True, nogil=True)
@@ -179,8 +183,8 @@ def measure(
     width: int,
 ) -> None:
     """Differences of a picture's blocks."""
-    _, differences, found = _result_in(result, height, width)
-    field, _, _, places, at = _scratch_in(memory, found, height, width)
+    _, differences, found, _ = _result_in(result, height, width)
+    field, _, places, at = _scratch_in(memory, found, height, width)
     picture = picture_in(memory, at, raw, kind)[0]
     _measure_pixels(picture, kind, block, entries, places, field, differences)
 
@@ -188,10 +192,10 @@ def measure(
 @njit(cache=True, nogil=True)
 def choose_in_mask(
     memory: Memory, result: Memory, height: int, width: int, pixels_min: int, grain_px: float
-) -> tuple[int, int, int]:
+) -> tuple[int, int, int, int, int]:
     """As `see`, of labels that another optimiser wrote."""
-    mask, differences, found = _result_in(result, height, width)
-    field, runs, box, _, _ = _scratch_in(memory, found, height, width)
+    mask, differences, found, runs = _result_in(result, height, width)
+    field, box, _, _ = _scratch_in(memory, found, height, width)
     pad(mask, field.rows, field.hot)
     return _choose(field, differences, runs, box, pixels_min, grain_px)
 
@@ -208,17 +212,20 @@ def see(
     width: int,
     beta: int,
     pixels_min: int,
-) -> tuple[int, int, int, int, int]:
+) -> tuple[int, int, int, int, int, int, int]:
     """All of it: differences, the exact optimum, the object's box.
 
     `raw`: the picture's bytes (H, 2 W). `kind`, `block`: how it is reduced to (height, width).
     `memory`: of `scratch`. `result`: a Sight's. Returns the energy, waves of the cut, pixels,
-    boundary points and cut sides of the object; no pixels: no region has `pixels_min`.
+    boundary points and cut sides of the object, runs and regions of the mask; no pixels: no region
+    has `pixels_min`.
     """
-    mask, differences, found = _result_in(result, height, width)
-    field, runs, box, places, at = _scratch_in(memory, found, height, width)
+    mask, differences, found, runs = _result_in(result, height, width)
+    field, box, places, at = _scratch_in(memory, found, height, width)
     picture = picture_in(memory, at, raw, kind)[0]
     _measure_pixels(picture, kind, block, entries, places, field, differences)
     energy = solve(field, differences, beta, mask)
-    pixels, points, cut = _choose(field, differences, runs, box, pixels_min, float(block))
-    return energy, field.counts[WAVES], pixels, points, cut
+    pixels, points, cut, count, regions = _choose(
+        field, differences, runs, box, pixels_min, float(block)
+    )
+    return energy, field.counts[WAVES], pixels, points, cut, count, regions

@@ -5,9 +5,10 @@ import pytest
 from drawn import CAMERA, SMALL, draw, empty, segmented, standing
 
 from naod.config import SegmentationConfig
-from naod.finding.find import find_object, likeliest, scored_groups
+from naod.finding.find import Expected, find_object, likeliest, scored_groups
 from naod.finding.groups import GROUPS_MAX
 from naod.finding.presence import distance_m
+from naod.finding.regions import regions_of
 from naod.perception.blob import find_blob
 from naod.pose.objects import Cylinder, Rectangle
 from naod.pose.prior import Prior
@@ -80,7 +81,8 @@ def test_two_cans_side_by_side_are_not_one():
 @pytest.mark.parametrize(("shape", "z"), [(CAN, 0.5), (CAN, 1.2), (BOARD, 0.9), (BOARD, 2.0)])
 def test_the_implied_distance_is_the_true_one(shape, z):
     segmentation = segmented(draw(empty(), shape, standing(0.0, 0.05, z)))
-    scored = scored_groups(segmentation, shape, CAMERA, None, SETTINGS.pixels_min)
+    expected = Expected(shape, CAMERA)
+    scored = scored_groups(segmentation, regions_of(segmentation), expected, SETTINGS.pixels_min)
     assert distance_m(scored.measures, SMALL.fx)[0] == pytest.approx(z, rel=0.1)
     assert found(segmentation.mask, shape) is not None
 
@@ -130,6 +132,7 @@ def test_without_shape_colour_decides():
 
 def test_clutter_is_looked_at_within_bounds():
     mask = (np.random.default_rng(1).random((120, 160)) < 0.3).astype(np.uint8)
-    scored = scored_groups(segmented(mask), CAN, CAMERA, None, 1)
+    segmentation = segmented(mask)
+    scored = scored_groups(segmentation, regions_of(segmentation), Expected(CAN, CAMERA), 1)
     assert 0 < len(scored.groups) <= GROUPS_MAX
     assert found(empty()) is None
