@@ -29,6 +29,7 @@ from naod.pose.prior import Prior
 from naod.pose.result import Estimator, ObjectPose
 
 NEAREST_M = 0.1
+AHEAD = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +115,8 @@ class Equipment:
         """Find and localise the object in a frame; None when it is not seen."""
         segmentation = self._segmenter_for(model).segment(frame.yuyv)
         settings = self.config.segmentation
-        found = find_object(segmentation, self.shape, self.camera, prior, settings)
+        expected_px = self._blur_px(frame, _point(AHEAD, None, prior), motion)
+        found = find_object(segmentation, self.shape, self.camera, prior, settings, expected_px)
         if found is None:
             return None
         blob = found.blob
