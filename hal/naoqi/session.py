@@ -96,6 +96,9 @@ class Session:
 
     def __init__(self, url: str, login: Login | None, timeout_s: float = CONNECT_S) -> None:
         qi = load_qi()
+        if not _listens(url):
+            # qi has crashed where sessions that could not connect were made one after another
+            raise NotConnectedError(f"NAOqi at {url} is not reachable: nobody listens there")
         self._services: dict[str, Any] = {}
         self._lock = threading.Lock()
         self._session = qi.Session()

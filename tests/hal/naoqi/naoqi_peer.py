@@ -29,13 +29,13 @@ PATIENCE_S = 20.0
 SIZE = (160, 120)
 
 
-def until(what: Callable[[], object], timeout_s: float = PATIENCE_S) -> Any:
+def until(what: Callable[[], object], timeout_s: float = PATIENCE_S, pause_s: float = 0.01) -> Any:
     """Ask another process again and again until it answers with something true."""
     ends_s = time.monotonic() + timeout_s
     pause = threading.Event()
     while not (found := what()):
         assert time.monotonic() < ends_s, "it did not come to that"
-        pause.wait(0.01)
+        pause.wait(pause_s)
     return found
 
 
@@ -75,7 +75,7 @@ class Peer:
         """Restart NAOqi, and wait until it is back."""
         self.world(method, *args)
         until(lambda: not self.ask_connected())
-        until(self.is_back)
+        until(self.is_back, pause_s=0.2)
 
     def ask_connected(self) -> bool:
         """Whether the test's own connection stands."""

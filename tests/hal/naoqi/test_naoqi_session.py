@@ -164,7 +164,7 @@ def test_service_that_is_not_threaded_delays_only_its_own_calls(session):
 
 def test_nobody_listens():
     begin_s = time.monotonic()
-    with pytest.raises(NotConnectedError, match="not reachable: Connect error: 111"):
+    with pytest.raises(NotConnectedError, match="not reachable: nobody listens"):
         Session("tcp://127.0.0.1:1", None)
     assert time.monotonic() - begin_s < 3.0
 
