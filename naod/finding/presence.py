@@ -42,6 +42,10 @@ LYING_COST = 3.5
 FILL_ENOUGH, FILL_TOLERANCE = 0.7, 0.1
 """So much of the outline is enough, the rest is ribbon or print; what lacks counts squared."""
 
+CHOSEN = 3.2
+"""For what has no known shape: such pictures are chosen by a person, mostly because the object is in
+them, and an object of many colours is less sure in each of its pixels than those that were fitted."""
+
 TURN_FREE = 0.5
 """Rad from which a board's turn counts: it is shown from the front, and seen from about there."""
 
@@ -120,7 +124,7 @@ def colour_and_shape(measures: Floats, cuts: NDArray[np.int64], known: bool) -> 
     weights = fitted_weights()
     rows = terms(measures)
     if not known:
-        return np.asarray(rows @ weights["unknown"])
+        return np.asarray(rows @ weights["unknown"] + CHOSEN)
     if not cuts.any():
         return np.asarray(rows @ weights["whole"])
     return np.where(cuts > 0, rows @ weights["cut"], rows @ weights["whole"])
