@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 from hal.errors import HalError
 from hal.protocols import Robot
 from hal.types import BodyState, Frame
+from naod.finding.regions import cores_of, regions_of
 from naod.geometry.camera import PinholeCamera
 from naod.loop.equipment import Equipment, Sighting
 from naod.perception.colour_model import Region
 from naod.perception.learning import DEFAULT_KIND, KINDS, ModelKind, learn_model
 from naod.pose.objects import Cylinder, ObjectShape
+from naod.pose.prior import Prior
 
 log = logging.getLogger(__name__)
 
@@ -59,7 +61,15 @@ def rehearse(
     yuyv = _painted(camera.width, camera.height, region)
     yuyv.flags.writeable = writeable
     frame = Frame(body.stamp_ns, yuyv, equipment.camera_name, 0.01, 0)
-    return equipment.sight(learn_model([yuyv, yuyv], region, kind), frame, body)
+    model = learn_model([yuyv, yuyv], region, kind)
+    sighting = equipment.sight(model, frame, body)
+    if sighting is not None:
+        # an easy picture needs neither, the first real one may need both
+        cores_of(regions_of(sighting.segmentation))
+        if sighting.pose is not None:
+            pose = sighting.pose
+            equipment.sight(model, frame, body, Prior(pose.T_camera_object, pose.covariance, 0.1))
+    return sighting
 
 
 def _silhouette(shape: ObjectShape, camera: PinholeCamera) -> Region:
