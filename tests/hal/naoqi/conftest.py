@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from naoqi_peer import Peer
@@ -40,3 +41,10 @@ def robot(peer: Peer) -> Iterator[NaoqiRobot]:
     found.camera.unseen(20.0)
     yield found
     found.close()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Whatever is here connects by qi; test_qi_apart.py runs it in a process of its own."""
+    for item in items:
+        if Path(item.fspath).parent == Path(__file__).parent:
+            item.add_marker(pytest.mark.qi)

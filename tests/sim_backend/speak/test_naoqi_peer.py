@@ -16,6 +16,7 @@ from hal.nao.joints import JOINT_NAMES
 from sim_backend.speak.naoqi_options import PeerOptions, split
 
 qi = pytest.importorskip("qi", reason="the package qi is not installed")
+pytestmark = pytest.mark.qi
 
 ANSWERS_S = 60.0
 NO_PARAMETER = 0xDEAD404
