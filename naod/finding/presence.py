@@ -43,8 +43,8 @@ FILL_ENOUGH, FILL_TOLERANCE = 0.7, 0.1
 """So much of the outline is enough, the rest is ribbon or print; what lacks counts squared."""
 
 CHOSEN = 3.2
-"""For what has no known shape: such pictures are chosen by a person, mostly because the object is in
-them, and an object of many colours is less sure in each of its pixels than those that were fitted."""
+"""For what has no known shape: such pictures are chosen by a person, mostly because the object is
+in them, and one of many colours is less sure in each of its pixels than those that were fitted."""
 
 TURN_FREE = 0.5
 """Rad from which a board's turn counts: it is shown from the front, and seen from about there."""
