@@ -14,7 +14,7 @@ from naod.finding.find import find_object
 from naod.geometry.camera import PinholeCamera, nominal_camera
 from naod.geometry.transforms import Matrix, Vector
 from naod.localisation.base_frame import T_base_camera, is_lifted
-from naod.localisation.body_model import BodyModel
+from naod.localisation.body_model import BodyFrames, BodyModel
 from naod.localisation.camera_motion import CameraMotion, camera_motion, motion_px
 from naod.localisation.ego import EgoPose, ego_pose
 from naod.localisation.looks import Look
@@ -92,9 +92,7 @@ class Equipment:
 
     def T_base_camera(self, body: BodyState) -> Matrix | None:
         """The camera in the base frame; None while the feet do not stand."""
-        if is_lifted(body.foot_load_kg):
-            return None
-        return T_base_camera(self.body.frames(body.angles_rad), body.foot_load_kg)
+        return _on_feet(self.body.frames(body.angles_rad), body)
 
     def motion(
         self, around: tuple[BodyState, BodyState] | None, walk: WalkState
@@ -124,7 +122,8 @@ class Equipment:
         pose = self._locate(frame, blob, self.config.approach.estimator, prior)
         blur_px = self._blur_px(frame, _point(ray, pose, prior), motion)
         edges_blur_px = pose.blur_px if pose else 0.0
-        T = self.T_base_camera(body)
+        frames = self.body.frames(body.angles_rad)
+        T = _on_feet(frames, body)
         placement = None
         if pose is not None and T is not None:
             placement = placed(frame.stamp_ns, pose, T, motion, blur_px, edges_blur_px)
@@ -134,7 +133,7 @@ class Equipment:
             segmentation=segmentation,
             ray_in_camera=ray,
             head=head_angles(body),
-            T_torso_camera=self.body.frames(body.angles_rad).T_torso_camera,
+            T_torso_camera=frames.T_torso_camera,
             pose=pose,
             look=placement.look() if placement else None,
             paper=self._printed(frame, blob, T, prior),
@@ -171,6 +170,10 @@ class Equipment:
             self._segmenter[1].take(model)
             self._segmenter = (model, self._segmenter[1])
         return self._segmenter[1]
+
+
+def _on_feet(frames: BodyFrames, body: BodyState) -> Matrix | None:
+    return None if is_lifted(body.foot_load_kg) else T_base_camera(frames, body.foot_load_kg)
 
 
 def head_angles(body: BodyState) -> HeadAngles:
