@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import cv2
+import msgspec
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -23,8 +22,7 @@ _CLIPPED = tuple(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Blob:
+class Blob(msgspec.Struct, frozen=True, eq=False):
     """A region of a mask, in pixels of the full picture (centres at whole numbers).
 
     `centre_px`: (2,) centroid. `area_px`: full pixels. `corners_px`: (4, 2) oriented box G, H, J,
@@ -112,14 +110,8 @@ def blob_of(
 
 
 def _blob(box: Box | Found, points: int, cut: int, pixels: int, grain_px: float) -> Blob:
-    return Blob(
-        centre_px=box.centre,
-        area_px=pixels * grain_px**2,
-        corners_px=box.corners,
-        boundary_px=box.boundary[:points],
-        grain_px=grain_px,
-        clipped=_CLIPPED[cut],
-    )
+    area_px = pixels * grain_px**2
+    return Blob(box.centre, area_px, box.corners, box.boundary[:points], grain_px, _CLIPPED[cut])
 
 
 def _together(table: NDArray[np.int64], wanted: NDArray[np.bool_]) -> NDArray[np.int64]:

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.optimum_field import CELLS_A_WORD, OBJECT
+from naod.perception.bits import pack, words_of
 from naod.perception.runs import (
     AREA,
     BOTTOM,
@@ -22,20 +22,6 @@ from naod.perception.runs import (
 
 __all__ = ["AREA", "BOTTOM", "LEFT", "RIGHT", "SUM_X", "SUM_Y", "TOP", "components"]
 
-_NO_DIFFERENCES = np.zeros((0, 0), dtype=np.int32)
-
-
-@njit(cache=True, nogil=True)
-def pad(mask: NDArray[np.uint8], codes: NDArray[np.uint8], hot: NDArray[np.uint8]) -> None:
-    """Codes of OBJECT for what is not zero, and which rows have any; the border stays."""
-    for i in range(mask.shape[0]):
-        line, out = mask[i], codes[i + 1]
-        anything = np.uint8(0)
-        for j in range(line.size):
-            anything |= line[j]
-            out[j] = OBJECT if line[j] else 0
-        hot[i + 1] = anything
-
 
 @njit(cache=True, nogil=True)
 def paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
@@ -46,16 +32,10 @@ def paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
 
 @njit(cache=True, nogil=True)
 def _components(
-    mask: NDArray[np.uint8],
-    rows: NDArray[np.uint8],
-    words: NDArray[np.uint64],
-    differences: NDArray[np.int32],
-    runs: Runs,
-    labels: NDArray[np.int32],
+    mask: NDArray[np.uint8], bits: NDArray[np.uint64], runs: Runs, labels: NDArray[np.int32]
 ) -> int:
-    hot = np.zeros(rows.shape[0], dtype=np.uint8)
-    pad(mask, rows, hot)
-    count, regions = find_runs(rows, words, hot, differences, runs)
+    pack(mask, bits)
+    count, regions = find_runs(bits, *mask.shape, runs)
     paint(runs, count, labels)
     return regions
 
@@ -68,9 +48,7 @@ def components(mask: NDArray[np.uint8]) -> tuple[NDArray[np.int32], NDArray[np.i
     """
     height, width = mask.shape
     labels = np.zeros((height, width), dtype=np.int32)
-    pitch = -(-(width + 1) // CELLS_A_WORD) * CELLS_A_WORD
-    rows = np.zeros((height + 2, pitch), dtype=np.uint8)
+    bits = np.empty(height * words_of(width), dtype=np.uint64)
     runs = empty_runs(height, width)
-    given = np.ascontiguousarray(mask, dtype=np.uint8)
-    regions = _components(given, rows, rows.view(np.uint64), _NO_DIFFERENCES, runs, labels)
+    regions = _components(np.ascontiguousarray(mask, dtype=np.uint8), bits, runs, labels)
     return labels, runs.table[1 : regions + 1, :7]

@@ -1,8 +1,8 @@
-"""A colour model compiled into one table: what every colour that a picture can have costs.
+"""A colour model compiled into tables: what every colour that a picture can have costs.
 
-Whatever the kind of model, a pixel is then one look into memory. An entry holds the difference of
-energies in steps and, in its lowest bits, the pixel's need: how many of the neighbours' votes
-make it object (see `naod.perception.optimum_field`), which beta and the difference decide.
+Whatever the kind of model, a pixel is then one look into memory. That is for its votes (see
+`naod.perception.optimum_field`), which beta and the difference decide, in a table small enough for
+the processor's caches; few pixels need the difference of energies itself.
 """
 
 from __future__ import annotations
@@ -14,11 +14,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.energy import LIMIT, Singletons
-from naod.perception.optimum_field import needs_of
+from naod.perception.optimum_field import votes_of
 from naod.perception.quantising import C_BITS, CELLS, Y_BITS
-
-NEED_BITS = 4
-NEED_MASK = (1 << NEED_BITS) - 1
 
 
 @cache
@@ -33,29 +30,25 @@ def cell_colours() -> NDArray[np.float32]:
 
 
 @njit(cache=True, nogil=True)
-def _pack(
-    differences: NDArray[np.int32],
-    beta: int,
-    needs: NDArray[np.uint8],
-    entries: NDArray[np.int32],
-) -> None:
-    for k in range(entries.size):
-        differences[k] = min(max(differences[k], np.int32(-LIMIT)), np.int32(LIMIT))
-    needs_of(differences, np.int32(beta), needs)
-    for k in range(entries.size):
-        entries[k] = (differences[k] << NEED_BITS) | np.int32(needs[k])
+def _limit(values: NDArray[np.int32], beta: int, votes: NDArray[np.uint8]) -> None:
+    for k in range(values.size):
+        values[k] = min(max(values[k], np.int32(-LIMIT)), np.int32(LIMIT))
+    votes_of(values, np.int32(beta), votes)
 
 
 class Lookup:
-    """Entries (CELLS,) int32 for one model and one beta, in memory taken at the start."""
+    """Of each of CELLS colours, for one model and one beta, in memory taken at the start.
+
+    `values` (CELLS,) int32: the difference of energies in steps. `votes` (CELLS,) uint8.
+    """
 
     def __init__(self, singletons: Singletons, beta: int) -> None:
-        self.entries = np.empty(CELLS, dtype=np.int32)
-        self._differences = np.empty(cell_colours().shape[:2], dtype=np.int32)
-        self._needs = np.empty(CELLS, dtype=np.uint8)
+        self.values = np.empty(CELLS, dtype=np.int32)
+        self.votes = np.empty(CELLS, dtype=np.uint8)
         self.rebuild(singletons, beta)
 
     def rebuild(self, singletons: Singletons, beta: int) -> None:
         """Take another model, or another beta in steps; about a millisecond."""
-        singletons.differences(cell_colours(), self._differences)
-        _pack(self._differences.reshape(-1), beta, self._needs, self.entries)
+        colours = cell_colours()
+        singletons.differences(colours, self.values.reshape(colours.shape[:2]))
+        _limit(self.values, beta, self.votes)

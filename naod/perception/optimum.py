@@ -1,7 +1,7 @@
 """The exact minimum of the two-label Potts energy (equation 3), which is a minimum cut.
 
 Greig, Porteous and Seheult 1989. Most pixels never get near the cut: their own difference decides,
-or the bounds of `optimum_bracket` do. Rows that are background altogether are not looked at again.
+or the bounds of `optimum_bracket` do.
 """
 
 from __future__ import annotations
@@ -10,73 +10,74 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.optimum_bracket import bracket
+from naod.perception.bits import WORD, ones, unpack, words_of
+from naod.perception.optimum_bracket import bracket, take_row
 from naod.perception.optimum_cut import cut
-from naod.perception.optimum_field import WAVES, Field, empty_field, needs_of
+from naod.perception.optimum_field import OBJECT, WAVES, Field, empty_field, pitch_of, votes_of
 
 BETA_MAX = 1 << 27
 """Twelve times as much, the most that a cell of the cut can hold, is still an int32."""
 
-
-@njit(cache=True, nogil=True)
-def _write_row(
-    codes: NDArray[np.uint8], differences: NDArray[np.int32], row: NDArray[np.uint8]
-) -> tuple[int, int]:
-    """Labels of one row; the sum of the object's differences, and labels that change in it."""
-    total = broken = 0
-    for j in range(row.size):
-        row[j] = codes[j] >> 1 & 1
-    for j in range(row.size):
-        total += differences[j] if row[j] else 0
-    for j in range(row.size - 1):
-        broken += row[j] != row[j + 1]
-    return total, broken
+_U0, _U1, _U63 = (np.uint64(n) for n in (0, 1, 63))
 
 
 @njit(cache=True, nogil=True)
-def _changes(codes: NDArray[np.uint8], below: NDArray[np.uint8], width: int) -> int:
-    broken = 0
-    for j in range(width):
-        broken += codes[j] != below[j]
-    return broken
+def broken_pairs(bits: NDArray[np.uint64], height: int, width: int) -> int:
+    """Neighbours of different label; `bits` begin with the first row's."""
+    words, broken = words_of(width), _U0
+    # beyond the last column there is nothing to differ from
+    inner = ~(_U1 << np.uint64((width - 1) % WORD))
+    for row in range(height):
+        for n in range(words - 1):
+            k = row * words + n
+            change = bits[k] ^ (bits[k] >> _U1 | bits[k + 1] << _U63)
+            broken += ones(change & inner if n == words - 2 else change)
+    for k in range((height - 1) * words):
+        broken += ones(bits[k] ^ bits[k + words])
+    return int(broken)
 
 
 @njit(cache=True, nogil=True)
-def _write(
-    field: Field, differences: NDArray[np.int32], beta: int, labels: NDArray[np.uint8]
-) -> int:
-    """Labels of decided codes, and their energy above the all-background field."""
-    height, width = labels.shape
-    total = broken = 0
-    for i in range(height):
-        hot = field.hot[i + 1]
-        if hot:
-            own, across = _write_row(field.rows[i + 1], differences[i], labels[i])
-            total += own
-            broken += across
-        else:
-            labels[i] = 0
-        if i + 1 < height and (hot or field.hot[i + 2]):
-            broken += _changes(field.rows[i + 1], field.rows[i + 2], width)
-    return total + beta * broken
+def solve(field: Field, values: NDArray[np.int32], places: NDArray[np.uint32], beta: int) -> None:
+    """The minimum from the planes, as bits in `field.least`.
 
-
-@njit(cache=True, nogil=True)
-def solve(
-    field: Field, differences: NDArray[np.int32], beta: int, labels: NDArray[np.uint8]
-) -> int:
-    """The minimum from the needs; its energy."""
-    cut(field, beta, bracket(field, differences))
-    return _write(field, differences, beta, labels)
+    values[places[i, j]] is the difference of pixel (i, j).
+    """
+    height, width = places.shape
+    left = bracket(field, height, width)
+    pitch, words = np.uint64(pitch_of(width)), np.uint64(words_of(width))
+    for k in range(left):
+        cell = np.uint64(field.candidates[k])
+        i, j = cell // pitch - _U1, cell % pitch
+        field.differences[cell] = values[places[i, j]]
+    cut(field, beta, left)
+    for k in range(left):
+        cell = np.uint64(field.candidates[k])
+        if field.codes[cell] == OBJECT:
+            row, j = cell // pitch, cell % pitch
+            field.least[row * words + j // np.uint64(WORD)] |= _U1 << (j % np.uint64(WORD))
 
 
 @njit(cache=True, nogil=True)
 def _minimise(
-    field: Field, differences: NDArray[np.int32], beta: int, labels: NDArray[np.uint8]
+    field: Field,
+    differences: NDArray[np.int32],
+    places: NDArray[np.uint32],
+    beta: int,
+    labels: NDArray[np.uint8],
 ) -> int:
-    for i in range(labels.shape[0]):
-        needs_of(differences[i], np.int32(beta), field.needs[i + 1])
-    return solve(field, differences, beta, labels)
+    height, width = labels.shape
+    for i in range(height):
+        votes_of(differences[i], np.int32(beta), field.votes)
+        take_row(field.votes, field.eights, field.plane_bytes, i, height, width)
+    solve(field, differences.reshape(-1), places, beta)
+    bits = field.least[words_of(width) :]
+    unpack(bits, labels)
+    own = 0
+    for i in range(height):
+        for j in range(width):
+            own += differences[i, j] if labels[i, j] else 0
+    return own + beta * broken_pairs(bits, height, width)
 
 
 class Optimum:
@@ -88,6 +89,7 @@ class Optimum:
     def __init__(self, height: int, width: int) -> None:
         self.shape = (height, width)
         self._field = empty_field(height, width)
+        self._places = np.arange(height * width, dtype=np.uint32).reshape(height, width)
 
     @property
     def counts(self) -> NDArray[np.int64]:
@@ -115,4 +117,4 @@ class Optimum:
             raise ValueError("expected contiguous fields")
         if not 0 <= beta <= BETA_MAX:
             raise ValueError(f"beta {beta}: 0 to {BETA_MAX} steps")
-        return int(_minimise(self._field, differences, beta, labels))
+        return int(_minimise(self._field, differences, self._places, beta, labels))

@@ -3,9 +3,8 @@
 The energy is submodular. From all-background, a cell that lowers the energy by joining the object
 does so next to any greater object too; from all-object, a cell that does not raise the energy by
 leaving may leave any smaller object. Both movements, each one-way, enclose the least minimum, and
-where they meet its label is known. They run together: an open cell is background in one and object
-in the other. All rows are asked at once a few times; cells that stay open are then asked again only
-when a neighbour has been decided.
+where they meet its label is known. Sixty-four cells move at once: what a cell does depends only on
+how many of its neighbours are object, and those counts are a few operations on bits.
 """
 
 from __future__ import annotations
@@ -14,165 +13,190 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.bits import EXPANDED, WORD, ones, trailing_zeros, transpose, words_of
 from naod.perception.optimum_field import (
-    ALWAYS,
-    BACKGROUND,
-    BORDER,
     CANDIDATES,
     CELLS_A_WORD,
-    NEVER,
-    NOWHERE,
+    ENOUGH,
+    HALF,
     OBJECT,
     OPEN,
+    PLANES,
     UNDECIDED,
     Field,
-    neighbourhood,
-    sides,
+    pitch_of,
 )
 
-_OBJECT_BITS = np.uint64(0x0202020202020202)
-_ANY_BITS = np.uint64(0x2222222222222222)
-_DIGIT = np.uint64(4)
-_NONE = np.uint64(0)
+Bits = NDArray[np.uint64]
 
-ROUNDS = 8
-"""Of questions to all rows at once; an even number. The cells that would need more are few."""
+SWEEPS_MAX = 16
+"""Down and up over the rows that can still change; what moves further is left to the cut."""
 
+TURNS_MAX = 6
+"""Of a row before the next one's turn; each moves a bound by one column."""
 
-@njit(cache=True, nogil=True)
-def _open(field: Field) -> None:
-    """Codes of all cells from their needs, and which rows have more than background."""
-    # one loop over all rows: a row is too short for wide vectors
-    codes, needs = field.codes, field.needs.reshape(-1)
-    for k in range(codes.size):
-        need = needs[k]
-        open_bit = np.uint8(need < np.uint8(NEVER)) << np.uint8(5)
-        object_bit = np.uint8(need == np.uint8(ALWAYS)) << np.uint8(1)
-        border = np.uint8(need == np.uint8(NOWHERE)) * np.uint8(BORDER)
-        codes[k] = np.uint8(open_bit | object_bit | border)
-    for row in range(field.hot.size):
-        words, seen = field.words[row], _NONE
-        for k in range(words.size):
-            seen |= words[k]
-        field.hot[row] = np.uint8(seen & _ANY_BITS != _NONE)
+_U0, _U1, _U8, _U63 = (np.uint64(n) for n in (0, 1, 8, 63))
+_BYTE = np.uint64(0xFF)
+_OPEN, _OBJECT = np.uint64(OPEN), np.uint64(OBJECT)
 
 
 @njit(cache=True, nogil=True)
-def _ask(
-    codes: NDArray[np.uint8],
-    needs: NDArray[np.uint8],
-    out: NDArray[np.uint8],
-    first: int,
-    last: int,
-    pitch: int,
+def _beside_border(votes: np.uint8, missing: int) -> np.uint8:
+    """Votes of a pixel that has `missing` neighbours less: each of those is half a vote."""
+    if votes & ENOUGH == 0:
+        # four were not enough
+        return np.uint8(0)
+    shift = (missing + (1 if votes & HALF else 0)) // 2
+    return np.uint8((votes & ENOUGH) >> shift | (ENOUGH << (PLANES - shift)) & ENOUGH)
+
+
+@njit(cache=True, nogil=True)
+def take_row(
+    votes: NDArray[np.uint8],
+    eights: Bits,
+    planes: NDArray[np.uint8],
+    row: int,
+    height: int,
+    width: int,
 ) -> None:
-    """Decide what can be decided between two cells from the codes as they are, into `out`."""
-    left, right = codes[first - 1 : last - 1], codes[first + 1 : last + 1]
-    up, down = codes[first - pitch : last - pitch], codes[first + pitch : last + pitch]
-    own, need, new = codes[first:last], needs[first:last], out[first:last]
-    for k in range(own.size):
-        near = np.uint8(np.uint8(left[k] + right[k]) + np.uint8(up[k] + down[k]))
-        is_open = np.uint8(own[k] == np.uint8(OPEN))
-        leaves = np.uint8(np.uint8(near >> np.uint8(4)) < need[k]) & is_open
-        joins = np.uint8(np.uint8(near & np.uint8(15)) >= need[k]) & is_open
-        # an open cell that joins is not one that leaves: its lower sum is never above its upper one
-        new[k] = np.uint8(own[k] + np.uint8(joins << np.uint8(1)) - np.uint8(leaves << np.uint8(5)))
+    """Planes of one row of the picture from its pixels' votes, which are used up.
+
+    votes, eights, planes: of a field, which as a whole would be much to hand over for every row.
+    """
+    above_below = (row == 0) + (row == height - 1)
+    if above_below:
+        for j in range(width):
+            votes[j] = _beside_border(votes[j], above_below + (j == 0) + (j == width - 1))
+    else:
+        votes[0] = _beside_border(votes[0], 1 + (width == 1))
+        if width > 1:
+            votes[width - 1] = _beside_border(votes[width - 1], 1)
+    count = -(-width // CELLS_A_WORD)
+    # the last word may hold what another row left there
+    votes[width : CELLS_A_WORD * count] = 0
+    transpose(eights, count)
+    first = (row + 1) * words_of(width) * CELLS_A_WORD
+    for k in range(PLANES):
+        plane, place = planes[k, first : first + count], np.uint64(8 * k)
+        for n in range(count):
+            plane[n] = np.uint8(eights[n] >> place)
 
 
 @njit(cache=True, nogil=True)
-def _ask_all(field: Field) -> None:
-    """ROUNDS of questions to all rows from the first to the last that are not background."""
-    top, bottom = 0, field.hot.size - 1
-    while top < bottom and field.hot[top] == 0:
-        top += 1
-    while bottom > top and field.hot[bottom] == 0:
-        bottom -= 1
-    if field.hot[top] == 0:
-        return
-    pitch = field.rows.shape[1]
-    first, last = top * pitch, (bottom + 1) * pitch
-    field.asked[first - pitch : first] = field.codes[first - pitch : first]
-    field.asked[last : last + pitch] = field.codes[last : last + pitch]
-    needs = field.needs.reshape(-1)
-    for _ in range(ROUNDS // 2):
-        _ask(field.codes, needs, field.asked, first, last, pitch)
-        _ask(field.asked, needs, field.codes, first, last, pitch)
+def _start(field: Field, height: int, words: int) -> None:
+    """Bounds from the pixels' own differences; CANDIDATES are counted."""
+    least, most, planes = field.least, field.most, field.planes
+    between = _U0
+    for k in range(words, (height + 1) * words):
+        low, high = planes[0, k], planes[PLANES - 1, k]
+        least[k], most[k] = low, high
+        between += ones(high & ~low)
+    field.counts[CANDIDATES] = np.int64(between)
 
 
 @njit(cache=True, nogil=True)
-def _collect(field: Field, differences: NDArray[np.int32], row: int, count: int) -> int:
-    """Append the open cells of a padded row to the candidates; their number afterwards."""
-    codes, words = field.rows[row], field.words[row]
-    start = row * codes.size
-    for k in range(words.size):
-        word = words[k]
-        if (word >> _DIGIT) & ~word & _OBJECT_BITS == _NONE:
-            continue
-        for j in range(k * CELLS_A_WORD, (k + 1) * CELLS_A_WORD):
-            if codes[j] == OPEN:
-                field.candidates[count] = start + j
-                field.differences[start + j] = differences[j]
+def _turn(planes: Bits, bound: Bits, row: int, words: int) -> bool:
+    """Move one row of a bound by its neighbours as they are; whether anything moved."""
+    moved = _U0
+    for k in range(row * words, (row + 1) * words - 1):
+        own = bound[k]
+        left = own << _U1 | bound[k - 1] >> _U63
+        right = own >> _U1 | bound[k + 1] << _U63
+        up, down = bound[k - words], bound[k + words]
+        either, both = left | right, left & right
+        either_row, both_rows = up | down, up & down
+        next_ = planes[0, k] | planes[1, k] & (either | either_row)
+        next_ |= planes[2, k] & (both | both_rows | either & either_row)
+        next_ |= planes[3, k] & (both & either_row | both_rows & either)
+        next_ |= planes[4, k] & both & both_rows
+        moved |= next_ ^ own
+        bound[k] = next_
+    return moved != _U0
+
+
+@njit(cache=True, nogil=True)
+def _settle(field: Field, bound: Bits, height: int, words: int) -> None:
+    """Sweep down and up over the rows beside which something moved."""
+    dirty, planes = field.dirty, field.planes
+    for row in range(1, height + 1):
+        open_ = _U0
+        for k in range(row * words, (row + 1) * words):
+            open_ |= planes[PLANES - 1, k]
+        dirty[row] = np.uint8(open_ != _U0)
+    for sweep in range(SWEEPS_MAX):
+        moved_any = False
+        for step in range(height):
+            row = 1 + step if sweep % 2 == 0 else height - step
+            if dirty[row] == 0:
+                continue
+            dirty[row] = 0
+            turns = 0
+            while turns < TURNS_MAX and _turn(planes, bound, row, words):
+                turns += 1
+            if turns:
+                moved_any = True
+                dirty[row - 1] = dirty[row + 1] = 1
+                dirty[row] = np.uint8(turns == TURNS_MAX)
+        if not moved_any:
+            return
+
+
+@njit(cache=True, nogil=True)
+def _list_open(field: Field, height: int, width: int) -> int:
+    """All cells between the bounds become candidates; how many there are."""
+    words, pitch, count = words_of(width), pitch_of(width), 0
+    for row in range(1, height + 1):
+        for n in range(words - 1):
+            k = row * words + n
+            open_ = field.most[k] & ~field.least[k]
+            start = row * pitch + WORD * n
+            while open_ != _U0:
+                field.candidates[count] = np.uint64(start) + trailing_zeros(open_)
+                open_ &= open_ - _U1
                 count += 1
     return count
 
 
 @njit(cache=True, nogil=True)
-def _verdict(field: Field, needs: NDArray[np.uint8], cell: np.uint64) -> np.uint8:
-    """OBJECT or BACKGROUND where both bounds agree on the cell, given its neighbours, else OPEN."""
-    near, need = neighbourhood(field, cell), needs[cell]
-    code = np.uint8(BACKGROUND) if (near >> 4) < need else np.uint8(OPEN)
-    return np.uint8(OBJECT) if (near & 15) >= need else code
+def _write_codes(field: Field, height: int, width: int) -> None:
+    """Codes of all rows that an open cell is in or beside."""
+    words, across = words_of(width), pitch_of(width) // CELLS_A_WORD
+    dirty = field.dirty
+    dirty[0] = dirty[height + 1] = 0
+    for row in range(1, height + 1):
+        open_ = _U0
+        for k in range(row * words, (row + 1) * words):
+            open_ |= field.most[k] & ~field.least[k]
+        dirty[row] = np.uint8(open_ != _U0)
+    whole = width // CELLS_A_WORD
+    for row in range(1, height + 1):
+        if not (dirty[row - 1] or dirty[row] or dirty[row + 1]):
+            continue
+        for eight in range(whole):
+            k, place = row * words + eight // 8, _U8 * np.uint64(eight % 8)
+            object_ = (field.least[k] >> place) & _BYTE
+            open_ = ((field.most[k] >> place) & _BYTE) & ~object_
+            codes = EXPANDED[object_] * _OBJECT | EXPANDED[open_] * _OPEN
+            field.code_words[row * across + eight] = codes
+        for j in range(whole * CELLS_A_WORD, width):
+            k, place = row * words + j // WORD, np.uint64(j % WORD)
+            code = np.uint8(OPEN) if field.most[k] >> place & _U1 else np.uint8(0)
+            code = np.uint8(OBJECT) if field.least[k] >> place & _U1 else code
+            field.codes[row * CELLS_A_WORD * across + j] = code
 
 
 @njit(cache=True, nogil=True)
-def _spread(field: Field, needs: NDArray[np.uint8], pending: int) -> None:
-    """Ask again around every pending cell until nothing more follows."""
-    while pending > 0:
-        pending -= 1
-        centre = np.uint64(field.pending[pending])
-        for step in sides(field):
-            cell = centre + step
-            if field.codes[cell] == OPEN:
-                code = _verdict(field, needs, cell)
-                field.codes[cell] = code
-                field.pending[pending] = cell
-                pending += code != OPEN
+def bracket(field: Field, height: int, width: int) -> int:
+    """Both bounds from the planes; cells between them are OPEN, and the first of the candidates.
 
-
-@njit(cache=True, nogil=True)
-def _decide(field: Field, candidates: int) -> int:
-    """Both movements over the candidates; keeps those still open and returns their number."""
-    needs = field.needs.reshape(-1)
-    pending = left = 0
-    for k in range(candidates):
-        cell = np.uint64(field.candidates[k])
-        code = _verdict(field, needs, cell)
-        field.codes[cell] = code
-        field.pending[pending] = field.candidates[left] = cell
-        pending += code != OPEN
-        left += code == OPEN
-    _spread(field, needs, pending)
-    candidates, left = left, 0
-    for k in range(candidates):
-        cell = np.uint64(field.candidates[k])
-        field.candidates[left] = cell
-        left += field.codes[cell] == OPEN
-    return left
-
-
-@njit(cache=True, nogil=True)
-def bracket(field: Field, differences: NDArray[np.int32]) -> int:
-    """Decide codes of all cells from their needs; open ones are the first of the candidates.
-
-    `differences` is (h, w). Returns the number of cells still open.
+    Returns how many those are.
     """
-    _open(field)
-    _ask_all(field)
-    count = 0
-    for i in range(differences.shape[0]):
-        if field.hot[i + 1]:
-            count = _collect(field, differences[i], i + 1, count)
-    left = _decide(field, count)
-    field.counts[CANDIDATES] = count
+    words = words_of(width)
+    _start(field, height, words)
+    _settle(field, field.least, height, words)
+    _settle(field, field.most, height, words)
+    left = _list_open(field, height, width)
+    if left:
+        _write_codes(field, height, width)
     field.counts[UNDECIDED] = left
     return left

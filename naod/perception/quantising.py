@@ -56,14 +56,21 @@ def bytes_of_picture(width: int) -> int:
 
 @njit(cache=True, nogil=True)
 def _by_words_of_four(
-    words: NDArray[np.uint64], top: int, y_cut: np.uint64, c_cut: np.uint64, out: NDArray[np.uint32]
+    sums: NDArray[np.uint64],
+    last: NDArray[np.uint64],
+    y_cut: np.uint64,
+    c_cut: np.uint64,
+    out: NDArray[np.uint32],
 ) -> None:
-    """One word of each of four rows is one block."""
-    a, b, c, d = words[top], words[top + 1], words[top + 2], words[top + 3]
+    """One word of each of four rows is one block: sums of three of them, and the last one.
+
+    Row after row, as the memory lies: reading four rows at a time keeps waiting for it.
+    """
+    # not unpacked: rows got that way are not known to be contiguous, and loops over them are slow
+    even, odd = sums[0], sums[1]
     for j in range(out.size):
-        y = (a[j] & _LANES) + (b[j] & _LANES) + (c[j] & _LANES) + (d[j] & _LANES)
-        uv = ((a[j] >> _U8) & _LANES) + ((b[j] >> _U8) & _LANES)
-        uv += ((c[j] >> _U8) & _LANES) + ((d[j] >> _U8) & _LANES)
+        y = even[j] + (last[j] & _LANES)
+        uv = odd[j] + ((last[j] >> _U8) & _LANES)
         y += y >> _U32
         y += y >> _U16
         uv += uv >> _U32
@@ -100,7 +107,7 @@ def _by_several_words(
     out: NDArray[np.uint32],
 ) -> None:
     """`across` words side by side are one block."""
-    even, odd = sums
+    even, odd = sums[0], sums[1]
     for j in range(out.size):
         y = uv = _U0
         for k in range(j * across, (j + 1) * across):
@@ -122,7 +129,7 @@ def _by_parts_of_a_word(
     out: NDArray[np.uint32],
 ) -> None:
     """A word is two blocks of 2 x 2 or four single pixels; a pair of pixels shares U and V."""
-    even, odd = sums
+    even, odd = sums[0], sums[1]
     for j in range(out.size):
         column = j * block
         k, lane = column // 4, np.uint64(column % 4)
@@ -183,7 +190,8 @@ def cells_of_row(
     y_cut = np.uint64(2 * power + 8 - Y_BITS)
     c_cut = np.uint64(max(2 * power - 1, 0) + 8 - C_BITS)
     if kind == WORDS_4:
-        _by_words_of_four(picture.words, row * block, y_cut, c_cut, out)
+        _add_words(picture.words, row * block, 3, picture.sums[0], picture.sums[1])
+        _by_words_of_four(picture.sums, picture.words[row * block + 3], y_cut, c_cut, out)
         return
     _add_words(picture.words, row * block, block, picture.sums[0], picture.sums[1])
     if block < 4:

@@ -1,6 +1,6 @@
 """Connected regions of a mask from its runs: stretches of touching pixels within a row.
 
-Only rows with something in them are looked at, eight pixels at a time.
+A row is sixty-four pixels a word, and only words in which something changes are looked into.
 """
 
 from __future__ import annotations
@@ -11,15 +11,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.bits import WORD, trailing_zeros, words_of
 from naod.perception.memory import LINE, Memory, int32s, int64s, zeroed
-from naod.perception.optimum_field import OBJECT
 
 AREA, LEFT, RIGHT, TOP, BOTTOM, SUM_X, SUM_Y, EVIDENCE = range(8)
 """Columns of the table of regions; EVIDENCE: steps by which its pixels are likelier object."""
 
-_OBJECT_BITS = np.uint64(0x0202020202020202)
-_NONE = np.uint64(0)
-_CELLS_A_WORD = 8
+_U0, _U1, _U63 = (np.uint64(n) for n in (0, 1, 63))
 
 
 class Runs(NamedTuple):
@@ -61,24 +59,21 @@ def empty_runs(height: int, width: int) -> Runs:
 
 
 @njit(cache=True, nogil=True)
-def _runs_of_row(
-    codes: NDArray[np.uint8], words: NDArray[np.uint64], row: int, runs: Runs, count: int
-) -> int:
-    """Append the runs of one padded row, whose last cell is never object."""
-    inside = False
-    for k in range(words.size):
-        bits = words[k] & _OBJECT_BITS
-        if bits == (_OBJECT_BITS if inside else _NONE):
-            continue
-        for j in range(k * _CELLS_A_WORD, (k + 1) * _CELLS_A_WORD):
-            here = codes[j] == OBJECT
-            if here == inside:
-                continue
-            inside = here
-            if here:
-                runs.rows[count], runs.starts[count] = row, j
+def _runs_of_row(bits: NDArray[np.uint64], row: int, runs: Runs, count: int) -> int:
+    """Append the runs of one row of bits, whose last word is empty."""
+    inside, before = False, _U0
+    for n in range(bits.size):
+        own = bits[n]
+        changes = own ^ (own << _U1 | before)
+        before = own >> _U63
+        while changes != _U0:
+            column = WORD * n + np.int64(trailing_zeros(changes))
+            changes &= changes - _U1
+            inside = not inside
+            if inside:
+                runs.rows[count], runs.starts[count] = row, column
             else:
-                runs.ends[count] = j - 1
+                runs.ends[count] = column - 1
                 count += 1
     return count
 
@@ -107,8 +102,8 @@ def _join_above(runs: Runs, above: int, first: int, count: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _measure(runs: Runs, differences: NDArray[np.int32], count: int) -> int:
-    """Name the regions and fill their table; how many there are."""
+def _measure(runs: Runs, count: int) -> int:
+    """Name the regions and fill their table, all but EVIDENCE; how many there are."""
     regions = 0
     table = runs.table
     for run in range(count):
@@ -131,39 +126,46 @@ def _measure(runs: Runs, differences: NDArray[np.int32], count: int) -> int:
         line[BOTTOM] = row
         line[SUM_X] += (start + end) * pixels // 2
         line[SUM_Y] += row * pixels
-        if differences.size:
-            line[EVIDENCE] += _evidence(differences[row, start : end + 1])
     return regions
 
 
 @njit(cache=True, nogil=True)
-def _evidence(differences: NDArray[np.int32]) -> int:
-    # a pixel that is likelier background counts nothing: the field closed a hole there
-    steps = 0
-    for j in range(differences.size):
-        steps -= min(differences[j], np.int32(0))
-    return steps
+def weigh(runs: Runs, count: int, values: NDArray[np.int32], places: NDArray[np.uint32]) -> int:
+    """EVIDENCE of all regions; values[places[i, j]] is the difference of pixel (i, j).
+
+    Returns the differences of all their pixels added up.
+    """
+    total = 0
+    for run in range(count):
+        line, here = runs.table[runs.names[run]], places[runs.rows[run]]
+        steps = cost = 0
+        for j in range(runs.starts[run], runs.ends[run] + 1):
+            value = values[here[j]]
+            cost += value
+            # a pixel that is likelier background counts nothing: the field closed a hole there
+            steps -= min(value, np.int32(0))
+        line[EVIDENCE] += steps
+        total += cost
+    return total
 
 
 @njit(cache=True, nogil=True)
-def find_runs(
-    rows: NDArray[np.uint8],
-    words: NDArray[np.uint64],
-    hot: NDArray[np.uint8],
-    differences: NDArray[np.int32],
-    runs: Runs,
-) -> tuple[int, int]:
-    """Runs and regions (eight neighbours) of OBJECT in a padded field; how many of each.
+def find_runs(bits: NDArray[np.uint64], height: int, width: int, runs: Runs) -> tuple[int, int]:
+    """Runs and regions (eight neighbours) of a mask's bits; how many of each.
 
-    `rows`, `words`, `hot` as in `Field`. `differences` is (h, w), or (0, 0) where there are none.
+    `bits`: rows of `words_of(width)` words, the last one empty.
     """
     above = count = 0
     last = -2
-    for i in range(rows.shape[0] - 2):
-        if hot[i + 1] == 0:
+    words = words_of(width)
+    for i in range(height):
+        row, seen = bits[i * words : (i + 1) * words], _U0
+        for n in range(words):
+            seen |= row[n]
+        if seen == _U0:
             continue
         first = count
-        count = _runs_of_row(rows[i + 1], words[i + 1], i, runs, count)
+        count = _runs_of_row(row, i, runs, count)
         _join_above(runs, above if last == i - 1 else first, first, count)
         above, last = first, i
-    return count, _measure(runs, differences, count)
+    return count, _measure(runs, count)

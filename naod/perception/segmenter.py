@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,16 +15,17 @@ from naod.perception.quantising import kind_of
 from naod.perception.reduction import Reduction
 from naod.perception.sight import Sight, Sights, choose_in_mask, measure, scratch, see
 
+_LEVELS = np.dtype(np.uint8)
 
-@dataclass(frozen=True, slots=True)
-class Segmentation:
+
+class Segmentation(msgspec.Struct, frozen=True, eq=False):
     """Labels of a picture.
 
     `mask`: (h, w) uint8, 1 = object. `energy`: of equation 3, in nat, the background's included.
     `scale`: full pixels per reduced pixel, in both directions. `size`: full width and height.
     `iterations`: sweeps of ICM, or waves of the exact cut, 0 where nothing was left to cut.
     `settled`: the energy came to rest within the sweeps allowed; the exact minimum always is.
-    `differences`: (h, w) object's singleton energy less the background's, in steps.
+    `given`: (h, w) int32 `differences` of a mask that no segmenter made, if they are known.
     `sight`: the memory that a segmenter lent for this, which is used again once nobody holds this,
     its mask, its differences, or anything of its blob.
     """
@@ -36,8 +36,13 @@ class Segmentation:
     scale: float
     size: tuple[int, int]
     settled: bool
-    differences: NDArray[np.int32] | None = None
-    sight: Sight | None = field(default=None, repr=False, compare=False)
+    given: NDArray[np.int32] | None = None
+    sight: Sight | None = None
+
+    @property
+    def differences(self) -> NDArray[np.int32] | None:
+        """(h, w) object's singleton energy less the background's, in steps; None if unknown."""
+        return self.given if self.sight is None else self.sight.differences
 
 
 class Segmenter:
@@ -73,6 +78,7 @@ class Segmenter:
     def take(self, model: ColourModel) -> None:
         """Go on with another colour model; about a millisecond, and no memory."""
         settings = self.settings
+        self._sights.look_up()
         self.singletons = Singletons(model, settings.background_energy, settings.light_std)
         self._lookup.rebuild(self.singletons, self.beta_steps)
 
@@ -93,13 +99,12 @@ class Segmenter:
             scale=float(self.reduction.block),
             size=self.reduction.size,
             settled=settled,
-            differences=sight.differences,
             sight=sight,
         )
 
     def _raw(self, yuyv: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width, height = self.reduction.size
-        if yuyv.shape != (height, width, 2) or yuyv.dtype != np.uint8:
+        if yuyv.shape != (height, width, 2) or yuyv.dtype != _LEVELS:
             raise ValueError(f"expected a uint8 YUYV picture {width}x{height}, got {yuyv.shape}")
         raw: NDArray[np.uint8] = np.ascontiguousarray(yuyv).reshape(height, 2 * width)
         # whether a picture may be written to is part of its type: one type, one compilation
@@ -112,7 +117,8 @@ class Segmenter:
             raw,
             self._kind,
             reduction.block,
-            self._lookup.entries,
+            self._lookup.votes,
+            self._lookup.values,
             self._memory,
             sight.memory,
             reduction.height,
@@ -121,16 +127,20 @@ class Segmenter:
             sight.pixels_min,
         )
         sight.pixels, sight.points, sight.cut, sight.run_count, sight.regions = found
+        sight.values = self._lookup.values
         return energy, waves, True
 
     def _descend(self, raw: NDArray[np.uint8], sight: Sight) -> tuple[int, int, bool]:
         block, (height, width) = self.reduction.block, sight.mask.shape
-        differences, mask, entries = sight.differences, sight.mask, self._lookup.entries
-        measure(raw, self._kind, block, entries, self._memory, sight.memory, height, width)
+        values, mask = self._lookup.values, sight.mask
+        measure(raw, self._kind, block, values, self._memory, sight.memory, height, width)
+        # they are there: nothing is left to look up
+        sight.values = None
+        differences = sight.differences
         label_by_singletons(differences, mask)
         sweeps = descend(differences, mask, self.beta_steps, self.settled_steps, self._energies)
         found = choose_in_mask(
-            self._memory, sight.memory, height, width, sight.pixels_min, float(block)
+            values, self._memory, sight.memory, height, width, sight.pixels_min, float(block)
         )
         sight.pixels, sight.points, sight.cut, sight.run_count, sight.regions = found
         last = int(self._energies[sweeps] - self._energies[sweeps - 1])
