@@ -11,9 +11,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.bits import WORD, ones, unpack, words_of
-from naod.perception.optimum_bracket import bracket, take_row
+from naod.perception.optimum_bracket import bracket, take_decided, take_row
 from naod.perception.optimum_cut import cut
-from naod.perception.optimum_field import OBJECT, WAVES, Field, empty_field, pitch_of, votes_of
+from naod.perception.optimum_field import WAVES, Field, empty_field, votes_of
 
 BETA_MAX = 1 << 27
 """Twelve times as much, the most that a cell of the cut can hold, is still an int32."""
@@ -43,19 +43,8 @@ def solve(field: Field, values: NDArray[np.int32], places: NDArray[np.uint32], b
 
     values[places[i, j]] is the difference of pixel (i, j).
     """
-    height, width = places.shape
-    left = bracket(field, height, width)
-    pitch, words = np.uint64(pitch_of(width)), np.uint64(words_of(width))
-    for k in range(left):
-        cell = np.uint64(field.candidates[k])
-        i, j = cell // pitch - _U1, cell % pitch
-        field.differences[cell] = values[places[i, j]]
-    cut(field, beta, left)
-    for k in range(left):
-        cell = np.uint64(field.candidates[k])
-        if field.codes[cell] == OBJECT:
-            row, j = cell // pitch, cell % pitch
-            field.least[row * words + j // np.uint64(WORD)] |= _U1 << (j % np.uint64(WORD))
+    cut(field, beta, bracket(field, values, places))
+    take_decided(field, *places.shape)
 
 
 @njit(cache=True, nogil=True)

@@ -142,17 +142,20 @@ def _settle(field: Field, bound: Bits, height: int, words: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _list_open(field: Field, height: int, width: int) -> int:
+def _list_open(field: Field, values: NDArray[np.int32], places: NDArray[np.uint32]) -> int:
     """All cells between the bounds become candidates; how many there are."""
-    words, pitch, count = words_of(width), pitch_of(width), 0
-    for row in range(1, height + 1):
+    height, width = places.shape
+    words, pitch, count = words_of(width), np.uint64(pitch_of(width)), 0
+    for i in range(height):
+        here, row = places[i], np.uint64(i + 1) * pitch
         for n in range(words - 1):
-            k = row * words + n
-            open_ = field.most[k] & ~field.least[k]
-            start = row * pitch + WORD * n
+            k = (i + 1) * words + n
+            open_, first = field.most[k] & ~field.least[k], np.uint64(WORD * n)
             while open_ != _U0:
-                field.candidates[count] = np.uint64(start) + trailing_zeros(open_)
+                j = first + trailing_zeros(open_)
                 open_ &= open_ - _U1
+                field.candidates[count] = row + j
+                field.differences[row + j] = values[here[j]]
                 count += 1
     return count
 
@@ -186,17 +189,35 @@ def _write_codes(field: Field, height: int, width: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def bracket(field: Field, height: int, width: int) -> int:
+def bracket(field: Field, values: NDArray[np.int32], places: NDArray[np.uint32]) -> int:
     """Both bounds from the planes; cells between them are OPEN, and the first of the candidates.
 
-    Returns how many those are.
+    values[places[i, j]] is the difference of pixel (i, j). Returns how many cells are open.
     """
+    height, width = places.shape
     words = words_of(width)
     _start(field, height, words)
     _settle(field, field.least, height, words)
     _settle(field, field.most, height, words)
-    left = _list_open(field, height, width)
+    left = _list_open(field, values, places)
     if left:
         _write_codes(field, height, width)
     field.counts[UNDECIDED] = left
     return left
+
+
+@njit(cache=True, nogil=True)
+def take_decided(field: Field, height: int, width: int) -> None:
+    """Open cells that have become OBJECT join the lower bound, which then is the minimum."""
+    words, pitch = words_of(width), np.uint64(pitch_of(width))
+    for row in range(1, height + 1):
+        first = np.uint64(row) * pitch
+        for n in range(words - 1):
+            k = row * words + n
+            open_, joined = field.most[k] & ~field.least[k], _U0
+            while open_ != _U0:
+                bit = open_ & (_U0 - open_)
+                code = field.codes[first + np.uint64(WORD * n) + trailing_zeros(open_)]
+                joined |= bit if code == OBJECT else _U0
+                open_ ^= bit
+            field.least[k] |= joined
