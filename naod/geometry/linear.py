@@ -1,4 +1,4 @@
-"""A small symmetric system, solved without a library call so that it can sit in a kernel."""
+"""Small symmetric systems without a library call: a robot has no scipy for numba's."""
 
 from __future__ import annotations
 
@@ -34,4 +34,30 @@ def solve_symmetric(A: NDArray[np.float64], b: NDArray[np.float64], x: NDArray[n
         for k in range(i + 1, n):
             total -= A[k, i] * x[k]
         x[i] = total / A[i, i]
+    return True
+
+
+@njit(cache=True, nogil=True)
+def invert_symmetric(A: NDArray[np.float64], inverse: NDArray[np.float64]) -> bool:
+    """Inverse (n, n) of a symmetric A (n, n), which is destroyed.
+
+    By Gauss and Jordan, in place and without pivots. False where A is not positive definite.
+    """
+    n = A.shape[0]
+    for k in range(n):
+        pivot = A[k, k]
+        if not pivot > 0.0:
+            return False
+        A[k, k] = 1.0
+        for j in range(n):
+            A[k, j] /= pivot
+        for i in range(n):
+            if i != k:
+                factor = A[i, k]
+                A[i, k] = 0.0
+                for j in range(n):
+                    A[i, j] -= factor * A[k, j]
+    for i in range(n):
+        for j in range(n):
+            inverse[i, j] = 0.5 * (A[i, j] + A[j, i])
     return True

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.geometry.linear import invert_symmetric
 from naod.pose.contour import CYLINDER, figures
 from naod.pose.objects import ObjectShape
 from naod.pose.reading import Reading
@@ -103,7 +104,10 @@ def _add_shared(
     total: NDArray[np.float64],
 ) -> None:
     """What an offset common to some points does to the pose; pull (6,): theirs together."""
-    response = inverse @ pull
+    response = np.zeros(6)
+    for i in range(6):
+        for j in range(6):
+            response[i] += inverse[i, j] * pull[j]
     for i in range(6):
         for j in range(6):
             total[i, j] += sigma * sigma * response[i] * response[j]
@@ -139,9 +143,11 @@ def stated(
         if kind == CYLINDER and j >= 3:
             for k in range(3):
                 information[j, 3 + k] += stiff * T[j - 3, 1] * T[k, 1]
-    inverse = np.linalg.inv(information)
+    inverse = np.empty((6, 6))
+    # with VAGUE it is positive definite
+    invert_symmetric(information, inverse)
     ratio = noise[PER_POINT] * misfit_ratio(residuals, weights, trust, sigma)
-    total = 0.5 * ratio * (inverse + inverse.T)
+    total = ratio * inverse
     for edge in range(4):
         _add_shared(inverse, pulls[edge], noise[EDGE], total)
         pull += pulls[edge]

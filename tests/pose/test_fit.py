@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from raster import BOARD, CAMERA, CAN, board_pose, can_pose, meets, towards_camera
 
-from naod.geometry.linear import solve_symmetric
+from naod.geometry.linear import invert_symmetric, solve_symmetric
 from naod.geometry.transforms import rot_x, rot_y, rot_z, transform
 from naod.pose.contour import ARC, figures, outline_in_camera, outline_px
 from naod.pose.fit import compare, fit_outline
@@ -166,4 +166,9 @@ def test_small_symmetric_systems_equal_numpys():
         expected = np.linalg.solve(A, b)
         assert solve_symmetric(A.copy(), b, x)
         assert np.allclose(x, expected)
+        inverse = np.empty((n, n))
+        assert invert_symmetric(A.copy(), inverse)
+        assert np.allclose(inverse, np.linalg.inv(A))
+        assert (inverse == inverse.T).all()
     assert not solve_symmetric(-np.eye(3), np.ones(3), np.empty(3))
+    assert not invert_symmetric(-np.eye(3), np.empty((3, 3)))
