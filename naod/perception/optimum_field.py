@@ -73,8 +73,7 @@ def pitch_of(width: int) -> int:
 @njit(cache=True, nogil=True)
 def field_in(memory: Memory, start: int, height: int, width: int) -> tuple[Field, int]:
     """A field cut from memory, and where that is free again."""
-    cells = (height + 2) * pitch_of(width)
-    words = words_of(width)
+    cells, words = (height + 2) * pitch_of(width), words_of(width)
     # one more than there are pixels, so that a list may be written first and lengthened if it holds
     room = height * width + 1
     planes, at = uint64s(memory, start, PLANES * (height + 2) * words)
