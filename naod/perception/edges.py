@@ -15,26 +15,26 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.geometry.linear import solve_symmetric
 from naod.perception.encoding import mixture_scores
 from naod.perception.placing import PAIRS_MAX, SHARES, place_edge
+from naod.perception.profile import contrast_of, is_between, is_of, outer_side, plateau, profile
 
 STEP_PX = 0.5
 SAMPLES_MAX = 129
-NOISE_LEVELS = 3.0
-"""Standard deviation of one channel of one pixel, 8-bit levels."""
-
-SHADING = 0.15
-"""Relative standard deviation of brightness over a plateau inside."""
-
 GATHERED2 = 0.9
 """Variance that shared chroma and bilinear samples add to a profile along a row, px squared."""
 
-OFFSET, SIGMA, WIDTH, WITHIN = range(4)
+OFFSET, SIGMA, WIDTH, WITHIN, UNEVEN = range(5)
+COLUMNS = 5
+"""Of what is measured at a place; `UNEVEN`: by how much of the step the two sides rise per px."""
+
 
 SLOPE_MIN = 0.02
-SLOPE_EXACT = 0.1
+SLOPE_EXACT = 0.04
 """Where light mixes over more pixels than this says, their number is too large to matter."""
+
+SLOW_PX = 5.0
+"""A step that seems to rise over more than this at its middle is asked how far its quarters are."""
 
 CONTRAST_MIN = 3.0
 """Separation of the plateaus, in standard deviations, below which there is no edge to see."""
@@ -54,96 +54,6 @@ class Edges:
     width_px: NDArray[np.float64]
     within: NDArray[np.bool_]
     seen: NDArray[np.bool_]
-
-
-@njit(cache=True, nogil=True)
-def _colour_at(
-    yuyv: NDArray[np.uint8], x: float, y: float, colours: NDArray[np.float64], k: int
-) -> None:
-    """Bilinear Y, U, V at a place into row k; the pairs' chroma lies between their pixels."""
-    height, width = yuyv.shape[0], yuyv.shape[1]
-    y, x = min(max(y, 0.0), height - 1.0), min(max(x, 0.0), width - 1.0)
-    i, j = min(int(y), max(height - 2, 0)), min(int(x), max(width - 2, 0))
-    below, beside = min(i + 1, height - 1), min(j + 1, width - 1)
-    a, b = y - i, x - j
-    upper = (1.0 - b) * yuyv[i, j, 0] + b * yuyv[i, beside, 0]
-    lower = (1.0 - b) * yuyv[below, j, 0] + b * yuyv[below, beside, 0]
-    colours[k, 0] = (1.0 - a) * upper + a * lower
-    pair = min(max(0.5 * (x - 0.5), 0.0), width // 2 - 1.0)
-    j = min(int(pair), max(width // 2 - 2, 0))
-    b, j, beside = pair - j, 2 * j, 2 * min(j + 1, width // 2 - 1)
-    for c in range(2):
-        upper = (1.0 - b) * yuyv[i, j + c, 1] + b * yuyv[i, beside + c, 1]
-        lower = (1.0 - b) * yuyv[below, j + c, 1] + b * yuyv[below, beside + c, 1]
-        colours[k, 1 + c] = (1.0 - a) * upper + a * lower
-
-
-@njit(cache=True, nogil=True)
-def _profile(
-    yuyv: NDArray[np.uint8],
-    place: NDArray[np.float64],
-    normal: NDArray[np.float64],
-    reach: float,
-    step: float,
-    depth: float,
-    colours: NDArray[np.float64],
-) -> int:
-    """Colours from `reach` inside to `reach` outside; no deeper inside than `depth`."""
-    count = 2 * int(reach / step) + 1
-    for k in range(count):
-        s = max((k - count // 2) * step, -depth)
-        _colour_at(yuyv, place[0] + s * normal[0], place[1] + s * normal[1], colours, k)
-    return count
-
-
-@njit(cache=True, nogil=True)
-def _plateau(
-    colours: NDArray[np.float64],
-    first: int,
-    last: int,
-    mean: NDArray[np.float64],
-    scatter: NDArray[np.float64],
-) -> None:
-    """Mean of rows first to last - 1, and half their covariance added to `scatter`."""
-    n = last - first
-    for c in range(3):
-        mean[c] = 0.0
-        for k in range(first, last):
-            mean[c] += colours[k, c] / n
-    for k in range(first, last):
-        for c in range(3):
-            for d in range(3):
-                scatter[c, d] += 0.5 * (colours[k, c] - mean[c]) * (colours[k, d] - mean[d]) / n
-
-
-@njit(cache=True, nogil=True)
-def _separation(
-    colours: NDArray[np.float64],
-    count: int,
-    inner: NDArray[np.float64],
-    outer: NDArray[np.float64],
-    direction: NDArray[np.float64],
-) -> float:
-    """Plateaus of a profile, the direction that tells them apart, and the contrast along it.
-
-    `direction` is scaled so that it takes the inner plateau to the outer one in a step of 1.
-    """
-    scatter, gap = np.zeros((3, 3)), np.empty(3)
-    quarter = max(count // 4, 1)
-    _plateau(colours, 0, quarter, inner, scatter)
-    _plateau(colours, count - quarter, count, outer, scatter)
-    for c in range(3):
-        gap[c] = outer[c] - inner[c]
-        scatter[c, c] += NOISE_LEVELS**2
-        for d in range(3):
-            shade_c = inner[c] - (128.0 if c else 0.0)
-            scatter[c, d] += SHADING**2 * shade_c * (inner[d] - (128.0 if d else 0.0))
-    solve_symmetric(scatter, gap, direction)
-    contrast2 = direction[0] * gap[0] + direction[1] * gap[1] + direction[2] * gap[2]
-    if contrast2 < 1e-6:
-        return 0.0
-    direction /= contrast2
-    return math.sqrt(contrast2)
 
 
 @njit(cache=True, nogil=True)
@@ -175,7 +85,7 @@ def _crossing(
     step: float,
     scores: NDArray[np.float64],
 ) -> tuple[float, float]:
-    """Where a profile is at a level, px from its middle, and its slope; slope 0 if nowhere."""
+    """Which sample of a profile, in fractions, is at a level, and its slope; slope 0 if none."""
     for k in range(count):
         scores[k] = 0.0
         for c in range(3):
@@ -185,7 +95,39 @@ def _crossing(
     if slope < SLOPE_MIN or not scores[k] <= level < scores[k + 1]:
         return 0.0, 0.0
     place = k + (level - scores[k]) / (scores[k + 1] - scores[k])
-    return (place - count // 2) * step, slope
+    return place, slope
+
+
+@njit(cache=True, nogil=True)
+def _rise(
+    scores: NDArray[np.float64], count: int, at: float, shares: NDArray[np.float64], step: float
+) -> float:
+    """Px over which light mixes, from where a quarter of it and three quarters are of one side."""
+    lower, upper = shares[SHARES // 4], shares[SHARES - 1 - SHARES // 4]
+    first, last = int(at), int(at) + 1
+    while first > 0 and scores[first] > lower:
+        first -= 1
+    while last < count - 1 and scores[last] < upper:
+        last += 1
+    begin, end = float(first), float(last)
+    if scores[first + 1] > scores[first]:
+        begin += min(max((lower - scores[first]) / (scores[first + 1] - scores[first]), 0.0), 1.0)
+    if scores[last] > scores[last - 1]:
+        end -= min(max((scores[last] - upper) / (scores[last] - scores[last - 1]), 0.0), 1.0)
+    return 2.0 * (end - begin) * step
+
+
+@njit(cache=True, nogil=True)
+def _unevenness(scores: NDArray[np.float64], count: int, few: int, step: float) -> float:
+    """By how much of the step a profile's outermost few samples rise per px, both sides together.
+
+    Sides that are not flat hide how far the step goes up or down.
+    """
+    half, rise = few // 2, 0.0
+    for k in range(half):
+        inner = scores[few - half + k] - scores[k]
+        rise += scores[count - half + k] - scores[count - few + k] + inner
+    return rise / (half * (few - half) * step)
 
 
 @njit(cache=True, nogil=True)
@@ -208,49 +150,94 @@ def _exactly(
 
 
 @njit(cache=True, nogil=True)
+def _sides(
+    colours: NDArray[np.float64],
+    count: int,
+    few: int,
+    outermost: bool,
+    palette: NDArray[np.float64],
+    plateaus: NDArray[np.float64],
+    scatter: NDArray[np.float64],
+) -> tuple[float, int]:
+    """Contrast of the two sides of a profile and where the outer one ends; 0 where there is none.
+
+    `plateaus` (3, 3): the inner and the outer colour and the direction that tells them apart.
+    `few`: samples that a side is measured from. outermost: the outer side is at the profile's end,
+    whatever lies between; else it is there only if the first step away from the inner colour goes
+    on to it.
+    """
+    scatter[:] = 0.0
+    plateau(colours, 0, few, plateaus[0], scatter)
+    first = count - few
+    if not outermost:
+        step = outer_side(colours, count, few, plateaus[0])
+        if step == count:
+            return 0.0, count
+        if not is_between(colours[step], plateaus[0], colours[count - few // 2 - 1]):
+            first = step
+    plateau(colours, first, first + few, plateaus[1], scatter)
+    if not is_of(plateaus[0], plateaus[1], palette):
+        return 0.0, count
+    contrast = contrast_of(plateaus[0], plateaus[1], scatter, plateaus[2])
+    return contrast if contrast >= CONTRAST_MIN else 0.0, first + few
+
+
+@njit(cache=True, nogil=True)
 def measure(
     yuyv: NDArray[np.uint8],
     places: NDArray[np.float64],
     normals: NDArray[np.float64],
     count: int,
-    reach: float,
+    reaches: NDArray[np.float64],
+    plateau_px: float,
     step: float,
     depth: float,
+    palette: NDArray[np.float64],
     exact: bool,
     found: NDArray[np.float64],
 ) -> None:
-    """What `measure_edges` says of the first `count` places, into the columns of `found` (n, 4).
+    """What `measure_edges` says of the first `count` places, into `found` (n, COLUMNS).
 
+    reaches: (n,) px. plateau_px: the outermost of a profile, on either side, that is one colour.
     step: px between samples of a profile; coarser ones do where edges are only looked for.
+    palette: (m, 3) colours of the object, of which the inner side must be one; none: any.
     """
     height, width = yuyv.shape[0], yuyv.shape[1]
-    reach = min(reach, (SAMPLES_MAX // 2) * step)
     colours, scores = np.empty((SAMPLES_MAX, 3)), np.empty(SAMPLES_MAX)
-    plateaus, shares, pairs = np.empty((3, 3)), np.empty(SHARES), np.empty((PAIRS_MAX, 3))
+    plateaus, scatter = np.empty((3, 3)), np.empty((3, 3))
+    shares, pairs = np.empty(SHARES), np.empty((PAIRS_MAX, 3))
+    few = max(int(plateau_px / step), 2)
     for i in range(count):
         nx, ny = normals[i, 0], normals[i, 1]
+        reach = min(reaches[i], (SAMPLES_MAX // 2) * step)
         x, y = places[i, 0] + reach * nx, places[i, 1] + reach * ny
         found[i, SIGMA] = np.inf
         found[i, WITHIN] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
         if not found[i, WITHIN]:
             continue
-        samples = _profile(yuyv, places[i], normals[i], reach, step, depth, colours)
-        contrast = _separation(colours, samples, plateaus[0], plateaus[1], plateaus[2])
-        if contrast < CONTRAST_MIN:
+        samples = profile(yuyv, places[i], normals[i], reach, step, depth, colours)
+        contrast, end = _sides(colours, samples, few, exact, palette, plateaus, scatter)
+        if contrast == 0.0:
             continue
         mixture_scores(plateaus[0], plateaus[1], plateaus[2], shares)
         half = shares[SHARES // 2]
-        offset, slope = _crossing(colours, samples, plateaus[0], plateaus[2], half, step, scores)
+        at, slope = _crossing(colours, end, plateaus[0], plateaus[2], half, step, scores)
         if slope == 0.0:
             continue
-        information = slope * slope
+        if 1.0 / slope > SLOW_PX:
+            slope = 1.0 / max(_rise(scores, end, at, shares, step), SLOW_PX)
+        offset, information = (at - samples // 2) * step, slope * slope
         if exact and slope > SLOPE_EXACT:
             x, y = places[i, 0] + offset * nx, places[i, 1] + offset * ny
             shift, information = _exactly(yuyv, x, y, normals[i], slope, plateaus, shares, pairs)
             offset += shift
         if information > 0.0:
             found[i, OFFSET], found[i, WIDTH] = offset, 1.0 / slope
+            found[i, UNEVEN] = _unevenness(scores, end, few, step)
             found[i, SIGMA] = 1.0 / (contrast * math.sqrt(information))
+
+
+_ANY = np.empty((0, 3))
 
 
 def measure_edges(
@@ -267,15 +254,18 @@ def measure_edges(
     how far to look on either side; depth_px: how far inside the object surely goes on. exact:
     put each where its pixels say, not only where its profile is half-way.
     """
-    found = np.zeros((len(places_px), 4))
+    count = len(places_px)
+    found = np.zeros((count, COLUMNS))
     measure(
         np.ascontiguousarray(yuyv),
         np.ascontiguousarray(places_px),
         np.ascontiguousarray(normals),
-        len(places_px),
-        reach_px,
+        count,
+        np.full(count, reach_px),
+        0.5 * reach_px,
         STEP_PX,
         depth_px,
+        _ANY,
         exact,
         found,
     )

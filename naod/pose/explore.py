@@ -107,11 +107,11 @@ def _descended(
 ) -> float:
     """Moves T to where it fits; mean squared residual in grains, infinite if that is nowhere."""
     n = points.shape[0]
-    residuals, jacobian, edges = np.empty(n), np.empty((n, 6)), np.empty(n, dtype=np.int64)
+    residuals, jacobian, edges = np.empty(n), np.empty((n, 6)), np.zeros(n, dtype=np.int64)
     weights = np.empty(n)
     descend(
-        kind, half_width, half_height, T, points, np.ones(n), 0.6 * grain, steps, SETTLED,
-        residuals, jacobian, edges, weights,
+        kind, half_width, half_height, T, points, np.ones(n), edges, np.zeros(4), 0.6 * grain,
+        steps, SETTLED, residuals, jacobian, edges, weights, np.empty(4),
     )  # fmt: skip
     if not stand_up(kind, T):
         return np.inf

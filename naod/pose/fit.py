@@ -18,6 +18,7 @@ from naod.geometry.linear import solve_symmetric
 from naod.pose.contour import CYLINDER, VERTICES, figures, is_arc, outline
 from naod.pose.foot import DEPTH_MIN_M, foot, nearest, project, tangent
 from naod.pose.objects import ObjectShape
+from naod.pose.shared import give_way, point_sigma
 
 ITERATIONS = 12
 SETTLED = 1e-5
@@ -26,13 +27,19 @@ OUTLIER = 3.0
 """Robust standard deviations at which a point's weight has fallen to a quarter."""
 
 
+SCATTER_LEAST = 0.2
+"""Of the points of an edge about its offset, of the offset's own spread: no surer than that."""
+
+
 @dataclass(frozen=True, slots=True)
 class Fit:
     """A fitted pose and what it was fitted to.
 
     residuals: (n,) pixels, positive outside the outline. jacobian: (n, 6) of them by translation
     (m) and rotation (rad) about the object's origin, camera axes. edges: (n,) which edge. weights:
-    (n,) in 0 to 1 after down-weighting outliers.
+    (n,) in 0 to 1 after down-weighting outliers. groups: (n,) which
+    points are off together, spreads: (4,) px by how much they may be, offsets: (4,) px by how much
+    they seem to be.
     """
 
     T_camera_object: NDArray[np.float64]
@@ -40,6 +47,9 @@ class Fit:
     jacobian: NDArray[np.float64]
     edges: NDArray[np.int64]
     weights: NDArray[np.float64]
+    groups: NDArray[np.int64]
+    spreads: NDArray[np.float64]
+    offsets: NDArray[np.float64]
 
     def cost(self, cut_px: float) -> float:
         """Mean squared residual, each cut at `cut_px`, px squared."""
@@ -90,14 +100,19 @@ def compare(
 
 @njit(cache=True, nogil=True)
 def robust_weights(
-    residuals: NDArray[np.float64], floor: float, weights: NDArray[np.float64]
-) -> float:
-    """Geman-McClure weights by the median absolute residual; returns the scale used."""
-    scale = max(floor, 1.4826 * float(np.median(np.abs(residuals))))
+    residuals: NDArray[np.float64],
+    groups: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    floor: float,
+    weights: NDArray[np.float64],
+) -> None:
+    """Geman-McClure weights by the median of the residuals beyond their groups' offsets (4,)."""
     for i in range(residuals.size):
-        ratio = residuals[i] / (OUTLIER * scale)
+        weights[i] = abs(residuals[i] - offsets[groups[i]])
+    scale = max(floor, 1.4826 * float(np.median(weights)))
+    for i in range(residuals.size):
+        ratio = weights[i] / (OUTLIER * scale)
         weights[i] = 1.0 / (1.0 + ratio * ratio) ** 2
-    return scale
 
 
 @njit(cache=True, nogil=True)
@@ -122,19 +137,31 @@ def _normal_equations(
     R: NDArray[np.float64],
     residuals: NDArray[np.float64],
     jacobian: NDArray[np.float64],
+    groups: NDArray[np.int64],
     weights: NDArray[np.float64],
     trust: NDArray[np.float64],
+    spreads: NDArray[np.float64],
+    offsets: NDArray[np.float64],
     A: NDArray[np.float64],
     b: NDArray[np.float64],
 ) -> None:
     A[:] = 0.0
     b[:] = 0.0
+    pulls, sums = np.zeros((4, 6)), np.zeros((2, 4))
     for i in range(residuals.size):
+        weight, edge = weights[i] * trust[i], groups[i]
+        sums[0, edge] += weight
+        sums[1, edge] += weight * residuals[i]
         for j in range(6):
-            weighted = weights[i] * trust[i] * jacobian[i, j]
+            weighted = weight * jacobian[i, j]
+            pulls[edge, j] += weighted
             b[j] -= weighted * residuals[i]
             for k in range(j + 1):
                 A[j, k] += weighted * jacobian[i, k]
+    if spreads.any():
+        least = SCATTER_LEAST * spreads.max()
+        sigma = point_sigma(residuals, weights, trust, groups, offsets, least)
+        give_way(pulls, sums[0], sums[1], spreads, sigma, offsets, np.empty(4), A, b)
     if kind == CYLINDER:
         # the turn about its own axis is not seen: hold it
         stiff = A[3, 3] + A[4, 4] + A[5, 5]
@@ -153,6 +180,8 @@ def descend(
     T: NDArray[np.float64],
     points: NDArray[np.float64],
     trust: NDArray[np.float64],
+    groups: NDArray[np.int64],
+    spreads: NDArray[np.float64],
     floor: float,
     iterations: int,
     settled: float,
@@ -160,18 +189,24 @@ def descend(
     jacobian: NDArray[np.float64],
     edges: NDArray[np.int64],
     weights: NDArray[np.float64],
+    offsets: NDArray[np.float64],
 ) -> None:
     """Gauss-Newton from T (3, 4), which is moved; the other arrays are as `compare` has them.
 
     floor: least scale of a residual on the plane z = 1. settled: step, of the distance and in
-    rad / 10, below which it is done.
+    rad / 10, below which it is done. groups (n,): which points have an offset in common; `edges`
+    for those of the edge each is nearest to. spreads (4,): standard deviations of the groups'
+    offsets, on that plane, 0 for none; offsets (4,): what they turn out to be.
     """
     A, b, step = np.empty((6, 6)), np.empty(6), np.empty(6)
     R, t = T[:, :3].copy(), T[:, 3].copy()
+    offsets[:] = 0.0
     for _ in range(iterations):
         compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
-        robust_weights(residuals, floor, weights)
-        _normal_equations(kind, R, residuals, jacobian, weights, trust, A, b)
+        robust_weights(residuals, groups, offsets, floor, weights)
+        _normal_equations(
+            kind, R, residuals, jacobian, groups, weights, trust, spreads, offsets, A, b
+        )
         if not solve_symmetric(A, b, step):
             break
         # no further at once than the distance to the object allows
@@ -184,7 +219,7 @@ def descend(
         if size < settled and turn < 10.0 * settled:
             break
     compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
-    robust_weights(residuals, floor, weights)
+    robust_weights(residuals, groups, offsets, floor, weights)
     T[:, :3], T[:, 3] = R, t
 
 
@@ -200,17 +235,21 @@ def fit_outline(
     """The pose whose outline fits points (n, 2) on the plane z = 1, from a start (4, 4).
 
     focal_px turns distances on that plane into pixels; floor_px is the least scale at which a
-    residual counts as an outlier; trust (n,) are weights the points come with.
+    residual counts as an outlier; trust (n,) are weights the points come with. No edge is taken to
+    be off as a whole.
     """
     n = len(points)
+    spreads, offsets = np.zeros(4), np.zeros(4)
     residuals, jacobian = np.empty(n), np.empty((n, 6))
-    edges, weights = np.empty(n, dtype=np.int64), np.empty(n)
+    edges, weights = np.zeros(n, dtype=np.int64), np.empty(n)
     T = np.ascontiguousarray(start[:3], dtype=np.float64).copy()
     descend(
         *figures(shape),
         T,
         np.ascontiguousarray(points),
         np.ones(n) if trust is None else trust,
+        edges,
+        spreads,
         floor_px / focal_px,
         iterations,
         SETTLED,
@@ -218,5 +257,15 @@ def fit_outline(
         jacobian,
         edges,
         weights,
+        offsets,
     )
-    return Fit(np.vstack([T, LAST_ROW]), residuals * focal_px, jacobian * focal_px, edges, weights)
+    return Fit(
+        np.vstack([T, LAST_ROW]),
+        residuals * focal_px,
+        jacobian * focal_px,
+        edges,
+        weights,
+        edges,
+        spreads,
+        offsets * focal_px,
+    )

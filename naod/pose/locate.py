@@ -12,17 +12,35 @@ from naod.perception.blob import Blob, blob_of_mask
 from naod.pose.coarse import CoarseFit, coarse_fit, outline_points
 from naod.pose.contour import corners_px
 from naod.pose.guesses import tilted
+from naod.pose.noise import EdgeNoise
 from naod.pose.objects import Cylinder, ObjectShape
 from naod.pose.paper import paper_pose
-from naod.pose.picture import misfit_gap, see
+from naod.pose.picture import see
 from naod.pose.prior import Prior
 from naod.pose.reading import Reading, read_points
 from naod.pose.result import EDGES, Estimator, ObjectPose
-from naod.pose.uncertainty import EdgeNoise, covariance
+from naod.pose.rivals import LEVEL_RAD, misfit_gap
+from naod.pose.uncertainty import covariance
 
-PICTURE_NOISE = EdgeNoise(floor_px=0.03, common_px=0.04, edge_px=0.045, per_point=2.0, fits_px=1.0)
+PICTURE_NOISE = EdgeNoise(
+    floor_px=0.03,
+    common_px=0.05,
+    edge_px=0.05,
+    edge_per_blur=0.035,
+    edge_per_rise=6.0,
+    per_point=1.5,
+    fits_px=1.0,
+)
 
-MASK_NOISE = EdgeNoise(floor_px=0.3, common_px=0.5, edge_px=0.3, per_point=3.0, fits_px=2.0)
+MASK_NOISE = EdgeNoise(
+    floor_px=0.3,
+    common_px=0.5,
+    edge_px=0.3,
+    edge_per_blur=0.0,
+    edge_per_rise=0.0,
+    per_point=3.0,
+    fits_px=2.0,
+)
 """Somebody else's mask: half a pixel to and fro is a matter of how it was drawn."""
 
 SUPPORT_MIN = 0.7
@@ -30,7 +48,6 @@ SUPPORT_MIN = 0.7
 
 MASK_POINTS = 1200
 NO_DOUBT = 50.0
-LEVEL_RAD = 0.01
 
 
 def locate(
@@ -76,7 +93,7 @@ def locate_mask(
 
 def _coarse_noise(blob: Blob) -> EdgeNoise:
     grain = blob.grain_px
-    return EdgeNoise(0.3 * grain, 0.25 * grain, 0.25 * grain, 3.0, 0.75 * grain)
+    return EdgeNoise(0.3 * grain, 0.25 * grain, 0.25 * grain, 0.0, 0.0, 3.0, 0.75 * grain)
 
 
 def _on_outline(
@@ -92,7 +109,7 @@ def _on_outline(
     found = [
         reading
         for start in _starts(coarse, shape)
-        if (reading := read_points(points, start, shape, camera, floor, noise.fits_px, coarse.gaps))
+        if (reading := read_points(points, start, shape, camera, floor, noise, coarse.gaps))
         and reading.support >= SUPPORT_MIN
     ]
     if not found:
@@ -124,7 +141,12 @@ def _starts(coarse: CoarseFit, shape: ObjectShape) -> list[NDArray[np.float64]]:
 
 
 def _gap(best: Reading, other: Reading) -> float:
-    return float(misfit_gap(best.fit.residuals, other.fit.residuals, best.trust))
+    first, second = best.fit, other.fit
+    gap = misfit_gap(
+        first.residuals, first.groups, first.offsets,
+        second.residuals, second.groups, second.offsets, first.spreads, best.trust,
+    )  # fmt: skip
+    return float(gap)
 
 
 def _pose(

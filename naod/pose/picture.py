@@ -12,24 +12,23 @@ from numpy.typing import NDArray
 from naod.geometry.camera import PinholeCamera
 from naod.pose.coarse import CoarseFit
 from naod.pose.contour import figures
-from naod.pose.explore import READINGS
 from naod.pose.fit import LAST_ROW, Fit
 from naod.pose.lens import lens_of
+from naod.pose.looking import (
+    BLUR,
+    RISE,
+    RISE_ASIDE,
+    SHARP_RISE_PX,
+    TALLY,
+    aliased,
+    mixed_px,
+)
+from naod.pose.noise import COMMON, EdgeNoise
 from naod.pose.objects import ObjectShape
 from naod.pose.reading import Reading
-from naod.pose.refine import (
-    BLUR,
-    PLACES_MAX,
-    SPAN,
-    TALLY,
-    find_edges,
-    find_readings,
-    fit_edges,
-)
-from naod.pose.uncertainty import EdgeNoise, stated
-
-SHARP_RISE_PX = 3.2
-"""Width of a step without motion, as bilinear samples of shared chroma show it."""
+from naod.pose.refine import PLACES_MAX, find_edges, find_readings
+from naod.pose.rivals import RIVALS_MAX, add_rivals, settle
+from naod.pose.uncertainty import stated
 
 BLURRED = 1.25
 """How much wider a step is before that is called motion."""
@@ -62,7 +61,9 @@ class _Scratch:
         self.looked, self.tally = np.zeros(4, dtype=np.int64), np.zeros(TALLY)
         self.residuals, self.jacobian = np.empty(n), np.empty((n, 6))
         self.edges = np.empty(n, dtype=np.int64)
+        self.groups = np.empty(n, dtype=np.int64)
         self.weights, self.trust = np.empty(n), np.empty(n)
+        self.spreads, self.offsets = np.zeros(4), np.zeros(4)
 
 
 def see(
@@ -78,7 +79,7 @@ def see(
     grain_px: resolution of what the coarse fit was made to.
     """
     s, lens, what = _Scratch(), lens_of(camera), figures(shape)
-    poses, count = np.empty((READINGS, 3, 4)), 1
+    poses, count = np.empty((RIVALS_MAX, 3, 4)), 1
     poses[0] = coarse.T_camera_object[:3]
     if coarse.other is not None:
         poses[1], count = coarse.other[:3], 2
@@ -86,29 +87,42 @@ def see(
     if count == 0:
         return None
     n = find_edges(
-        yuyv, *what, poses[0], lens, s.points, s.sigmas, s.looked, s.tally,
-        s.residuals, s.jacobian, s.edges, s.weights, s.trust,
+        yuyv, *what, poses[0], lens, noise.figures, s.points, s.sigmas, s.groups, s.looked,
+        s.tally, s.residuals, s.jacobian, s.edges, s.weights, s.trust, s.spreads, s.offsets,
     )  # fmt: skip
     if n == 0:
         return None
-    best, gap = _settle(what, poses, count, n, lens, s)
+    count = add_rivals(*what, poses, count)
+    gap = settle(
+        *what, poses, count, s.points[:n], s.sigmas[:n], s.groups[:n], lens, s.spreads,
+        s.residuals[:n], s.jacobian[:n], s.edges[:n], s.weights[:n], s.trust[:n], s.offsets,
+    )  # fmt: skip
+    return _told(what[0], poses, gap, n, s, noise)
+
+
+def _told(
+    kind: int,
+    poses: NDArray[np.float64],
+    gap: float,
+    n: int,
+    s: _Scratch,
+    noise: EdgeNoise,
+) -> Seen:
+    """What n edge points say of the first of the poses, the second being `gap` behind."""
+    fits_px = noise.fits_px * max(1.0, s.tally[BLUR] / SHARP_RISE_PX)
+    seen, support = _shares(s.residuals[:n], s.edges[:n], s.looked, fits_px)
+    sharpest = mixed_px(min(s.tally[RISE], s.tally[RISE_ASIDE]), SHARP_RISE_PX)
     figures_of_noise = noise.figures
-    seen, support = _shares(
-        s.residuals[:n],
-        s.edges[:n],
-        s.looked,
-        noise.fits_px * max(1.0, s.tally[BLUR] / SHARP_RISE_PX),
-    )
-    blurred(figures_of_noise, s.tally[BLUR], s.tally[SPAN])
+    figures_of_noise[COMMON] *= aliased(sharpest)
     total = stated(
-        what[0], poses[best], s.residuals[:n], s.jacobian[:n], s.edges[:n], s.weights[:n],
-        s.trust[:n], figures_of_noise,
+        kind, poses[0], s.residuals[:n], s.jacobian[:n], s.groups[:n], s.weights[:n],
+        s.trust[:n], s.spreads, s.offsets, figures_of_noise,
     )  # fmt: skip
     fit = Fit(
-        np.vstack([poses[best], LAST_ROW]), s.residuals[:n], s.jacobian[:n], s.edges[:n],
-        s.weights[:n],
+        np.vstack([poses[0], LAST_ROW]), s.residuals[:n], s.jacobian[:n], s.edges[:n],
+        s.weights[:n], s.groups[:n], s.spreads, s.offsets,
     )  # fmt: skip
-    other = np.vstack([poses[1 - best], LAST_ROW]) if count > 1 else None
+    other = np.vstack([poses[1], LAST_ROW]) if math.isfinite(gap) else None
     reading = Reading(fit, s.points[:n], s.trust[:n], support)
     return Seen(reading, total, blur_of(float(s.tally[BLUR])), seen, other, gap)
 
@@ -118,50 +132,6 @@ def blur_of(rise_px: float) -> float:
     if rise_px < BLURRED * SHARP_RISE_PX:
         return 0.0
     return math.sqrt(rise_px**2 - SHARP_RISE_PX**2)
-
-
-def _settle(
-    what: tuple[int, float, float],
-    poses: NDArray[np.float64],
-    count: int,
-    n: int,
-    lens: NDArray[np.float64],
-    s: _Scratch,
-) -> tuple[int, float]:
-    """Which of the readings fits the edges best, which are then those of `s`; and the gap."""
-    if count == 1:
-        return 0, math.inf
-    t = _Scratch()
-    if not fit_edges(
-        *what, poses[1], s.points[:n], s.sigmas[:n], lens,
-        t.residuals[:n], t.jacobian[:n], t.edges[:n], t.weights[:n], t.trust[:n],
-    ):  # fmt: skip
-        return 0, math.inf
-    gap = misfit_gap(s.residuals[:n], t.residuals[:n], s.trust[:n])
-    if gap >= 0.0:
-        return 0, gap
-    s.residuals, s.jacobian, s.edges, s.weights = t.residuals, t.jacobian, t.edges, t.weights
-    return 1, -gap
-
-
-OUTLIER = 3.0
-"""Standard deviations beyond which a residual says no more than that it does not fit."""
-
-SIGMA_LEAST_PX = 0.05
-
-
-@njit(cache=True, nogil=True)
-def misfit_gap(
-    first: NDArray[np.float64], second: NDArray[np.float64], trust: NDArray[np.float64]
-) -> float:
-    """By how much the second residuals (n,) are worse: squared deviations, cut at OUTLIER."""
-    sigma = max(SIGMA_LEAST_PX, 1.4826 * min(np.median(np.abs(first)), np.median(np.abs(second))))
-    total = 0.0
-    for i in range(first.size):
-        scale = math.sqrt(trust[i]) / sigma
-        total -= min(abs(first[i]) * scale, OUTLIER) ** 2
-        total += min(abs(second[i]) * scale, OUTLIER) ** 2
-    return total
 
 
 @njit(cache=True, nogil=True)
@@ -180,24 +150,3 @@ def _shares(
         seen[k] = near[k] > 0 and near[k] >= HALF * looked[k]
         total += near[k]
     return seen, total / max(looked.sum(), 1)
-
-
-EDGE, PER_POINT = 2, 3
-SHADED = 0.06
-"""Share of a blur that is as wide as the object by which its edges may seem shifted."""
-
-SMALL_PX = 15.0
-"""Width of an object on which straight pieces and plateaus are twice as coarse a description."""
-
-
-@njit(cache=True, nogil=True)
-def blurred(noise: NDArray[np.float64], rise_px: float, span_px: float) -> None:
-    """Figures of noise where steps are so wide, on an object so wide: more neighbours err together.
-
-    An edge that mixes with the object's other side has no plateau to be half-way from.
-    """
-    wider, span_px = math.sqrt(max(1.0, rise_px / SHARP_RISE_PX)), max(span_px, 1.0)
-    noise[PER_POINT] *= wider
-    noise[EDGE] *= wider * (1.0 + SMALL_PX / span_px)
-    if wider > BLURRED:
-        noise[EDGE] += SHADED * rise_px * rise_px / span_px

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from naod.pose.contour import figures
 from naod.pose.explore import stand_up
 from naod.pose.fit import Fit, fit_outline
 from naod.pose.lens import focal, lens_of
+from naod.pose.noise import EdgeNoise
 from naod.pose.objects import ObjectShape
 
 ITERATIONS = 30
@@ -37,23 +38,24 @@ def read_points(
     shape: ObjectShape,
     camera: PinholeCamera,
     floor_px: float,
-    fits_px: float,
+    noise: EdgeNoise,
     gaps: float = 0.0,
 ) -> Reading | None:
     """The pose that fits points (n, 2) px of an outline, from a start (4, 4); None if that is none.
 
-    floor_px: least scale at which a residual is an outlier. fits_px: how close a point is that
-    supports the outline. gaps: share of the outline without points.
+    floor_px: least scale at which a residual is an outlier. gaps: share of the outline without
+    points.
     """
     centre_x, centre_y = points_px.mean(axis=0)
     around = np.argsort(np.arctan2(points_px[:, 1] - centre_y, points_px[:, 0] - centre_x))
     points_px = points_px[around]
     scale = focal(lens_of(camera))
     points = camera.normalised(points_px)
-    fit = upright(fit_outline(shape, start, points, scale, floor_px, iterations=ITERATIONS), shape)
+    found = fit_outline(shape, start, points, scale, floor_px, iterations=ITERATIONS)
+    fit = upright(found, shape)
     if fit is None:
         return None
-    near = np.count_nonzero(np.abs(fit.residuals) < fits_px) / len(points_px)
+    near = np.count_nonzero(np.abs(fit.residuals) < noise.fits_px) / len(points_px)
     return Reading(fit, points_px, np.ones(len(points_px)), near * (1.0 - gaps))
 
 
@@ -63,5 +65,4 @@ def upright(fit: Fit, shape: ObjectShape) -> Fit | None:
     if not stand_up(figures(shape)[0], T[:3]):
         return None
     turned = T[:3, 1] @ fit.T_camera_object[:3, 1] < 0.0
-    edges = (fit.edges + 2) % 4 if turned else fit.edges
-    return Fit(T, fit.residuals, fit.jacobian, edges, fit.weights)
+    return replace(fit, T_camera_object=T, edges=(fit.edges + 2) % 4 if turned else fit.edges)

@@ -2,47 +2,44 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.edges import OFFSET, SIGMA, WIDTH, WITHIN, measure
-from naod.pose.around import narrowest, places_around, seen_outline
-from naod.pose.contour import VERTICES
 from naod.pose.explore import READINGS, explore, residuals_of, stand_up
 from naod.pose.fit import descend
 from naod.pose.guesses import OTHERS_MAX, other_readings
 from naod.pose.lens import focal, from_pixels
+from naod.pose.looking import (
+    LOOKED,
+    MOVED,
+    RISE,
+    RISE_ASIDE,
+    SHARP_RISE_PX,
+    SPAN,
+    TALLY,
+    UNEVEN_SIDES,
+    WIDE,
+    aliased,
+    look,
+    mixed_px,
+)
+from naod.pose.noise import EDGE, PER_BLUR, PER_RISE
 
-LOOKED, FOUND, BLUR, SPAN, MOVED = range(5)
-TALLY = 5
-"""Of a tally: places looked at, edges found there, width of the more blurred ones, and the
-object's width, and how far most edges were from where they were looked for, px."""
+PLACES_MAX = 80
+WIDE_PLACES = 48
+WIDE_GRAINS, WIDE_PX = 2.5, 4.0
+MOVED_PX, GREW = 1.0, 1.4
+"""An outline that has moved further, and steps that are so much wider than was thought, are looked
+at again."""
 
-PLACES_MAX = 128
-WIDE_PLACES = 64
-APART_PX = 2.0
-"""Each edge is placed by pixels as far along it: closer ones would say the same again."""
+WIDE_LOOKS = 2
+SEEN_WHOLE, REACH_RISES = 0.8, 1.2
+"""Wider than so much of the way looked, a step may be wider still; a look over so many of its
+widths tells."""
 
-WIDE = 0.2
-"""How far from a blob's outline edges are looked for, of its width: shading hides as much of a can
-from its colour."""
-
-WIDE_GRAINS = 2.5
-NEAR_PX = 4.0
-"""How far from a good outline: the step and its plateaus."""
-
-NEAR_RISES = 1.2
-"""The same in widths of a blurred step."""
-
-INSIDE = 0.4
-"""Of the object's width: so far inside there is surely nothing else."""
-
-BLURRED_SHARE = 0.8
-"""Motion blurs the edges across it: the width of an edge that four of five do not reach."""
-
-MOST_SHARE = 0.7
-MOVED_PX = 1.0
 LOOKS = 3
 MISSED = 4.0
 """What an edge not seen counts as, in widths of a grain."""
@@ -50,62 +47,13 @@ MISSED = 4.0
 EXPLAINED = 0.6
 """Mean distance of edges from an outline, in grains, at which no other is asked for its."""
 
-WIDE_SAMPLES = 20
+EVEN = 0.008
+"""Rise of a side per px, of the step's, that shading and noise make."""
+
 EDGE_FLOOR_PX = 0.05
 WIDE_GRAIN_PX, FLOOR_PX = 0.5, 0.15
 POINTS_MIN = 12
 STEPS, SETTLED = 8, 1e-4
-STEP_PX = 0.5
-
-
-@njit(cache=True, nogil=True)
-def look(
-    yuyv: NDArray[np.uint8],
-    kind: int,
-    half_width: float,
-    half_height: float,
-    T: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    most: int,
-    reach: float,
-    reach_share: float,
-    exact: bool,
-    points: NDArray[np.float64],
-    sigmas: NDArray[np.float64],
-    looked: NDArray[np.int64],
-    tally: NDArray[np.float64],
-) -> int:
-    """Edges of the picture near the outline at T (3, 4); returns how many.
-
-    points (most, 2) and sigmas (most,) in px. looked (4,): places the picture shows of each edge.
-    Near is `reach` px, or `reach_share` of the object's width if that is more. exact: as
-    `measure_edges` has it.
-    """
-    image, names = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
-    places, normals = np.empty((most, 2)), np.empty((most, 2))
-    edges, found = np.empty(most, dtype=np.int64), np.zeros((most, 4))
-    pieces = seen_outline(kind, half_width, half_height, T, image, names)
-    span = focal(lens) * narrowest(image, pieces)
-    count = places_around(image, names, pieces, lens, most, APART_PX, places, normals, edges)
-    reach = max(reach, reach_share * span)
-    step = STEP_PX if exact else max(STEP_PX, reach / WIDE_SAMPLES)
-    measure(yuyv, places, normals, count, reach, step, INSIDE * span, exact, found)
-    seen, widths, moves = 0, np.empty(count), np.empty(count)
-    looked[:] = 0
-    for i in range(count):
-        if found[i, WITHIN] > 0.0:
-            looked[edges[i]] += 1
-        if not np.isfinite(found[i, SIGMA]):
-            continue
-        for c in range(2):
-            points[seen, c] = places[i, c] + found[i, OFFSET] * normals[i, c]
-        sigmas[seen], widths[seen] = found[i, SIGMA], found[i, WIDTH]
-        moves[seen] = abs(found[i, OFFSET])
-        seen += 1
-    tally[LOOKED], tally[FOUND], tally[SPAN] = looked.sum(), seen, span
-    tally[BLUR] = np.sort(widths[:seen])[int(BLURRED_SHARE * seen)] if seen else 0.0
-    tally[MOVED] = np.sort(moves[:seen])[int(MOST_SHARE * seen)] if seen else 0.0
-    return seen
 
 
 @njit(cache=True, nogil=True)
@@ -126,15 +74,22 @@ def find_readings(
     since those about a wrong one are not all the object's. `tally` is that of the best's.
     """
     points, sigmas = np.empty((WIDE_PLACES, 2)), np.empty(WIDE_PLACES)
+    groups = np.empty(WIDE_PLACES, dtype=np.int64)
     looked, counted = np.empty(4, dtype=np.int64), np.empty(TALLY)
     guesses, found = np.empty((OTHERS_MAX, 3, 4)), np.empty((READINGS, 3, 4))
-    wide, best, made = max(WIDE_GRAINS * grain_px, NEAR_PX), np.inf, 0
+    wide, best, made = max(WIDE_GRAINS * grain_px, WIDE_PX), np.inf, 0
     starts = poses[:count].copy()
     for k in range(count):
-        seen = look(
-            yuyv, kind, half_width, half_height, starts[k], lens, WIDE_PLACES, wide, WIDE, False,
-            points, sigmas, looked, counted,
-        )  # fmt: skip
+        reach = wide
+        for _ in range(WIDE_LOOKS):
+            seen = look(
+                yuyv, kind, half_width, half_height, starts[k], lens, WIDE_PLACES, reach, points,
+                sigmas, groups, looked, counted,
+            )  # fmt: skip
+            most = max(counted[RISE], counted[RISE_ASIDE])
+            if most < SEEN_WHOLE * max(reach, WIDE * counted[SPAN]):
+                break
+            reach = REACH_RISES * most
         if seen < POINTS_MIN:
             continue
         on_plane = np.empty((seen, 2))
@@ -165,8 +120,10 @@ def find_edges(
     half_height: float,
     T: NDArray[np.float64],
     lens: NDArray[np.float64],
+    noise: NDArray[np.float64],
     points: NDArray[np.float64],
     sigmas: NDArray[np.float64],
+    groups: NDArray[np.int64],
     looked: NDArray[np.int64],
     tally: NDArray[np.float64],
     residuals: NDArray[np.float64],
@@ -174,6 +131,8 @@ def find_edges(
     edges: NDArray[np.int64],
     weights: NDArray[np.float64],
     trust: NDArray[np.float64],
+    spreads: NDArray[np.float64],
+    offsets: NDArray[np.float64],
 ) -> int:
     """Moves T (3, 4) to fit the edges close to its outline, placed exactly; returns how many.
 
@@ -182,21 +141,36 @@ def find_edges(
     """
     seen = 0
     for _ in range(LOOKS):
-        near = max(NEAR_PX, NEAR_RISES * tally[BLUR])
+        rise, rise_aside = tally[RISE], tally[RISE_ASIDE]
         seen = look(
-            yuyv, kind, half_width, half_height, T, lens, PLACES_MAX, near, 0.0, True,
-            points, sigmas, looked, tally,
+            yuyv, kind, half_width, half_height, T, lens, PLACES_MAX, 0.0, points, sigmas, groups,
+            looked, tally,
         )  # fmt: skip
         if seen < POINTS_MIN:
             return 0
+        edge_spreads(noise, tally, spreads)
         if not fit_edges(
-            kind, half_width, half_height, T, points[:seen], sigmas[:seen], lens,
-            residuals[:seen], jacobian[:seen], edges[:seen], weights[:seen], trust[:seen],
+            kind, half_width, half_height, T, points[:seen], sigmas[:seen], groups[:seen],
+            lens, spreads, residuals[:seen], jacobian[:seen], edges[:seen], weights[:seen],
+            trust[:seen], offsets,
         ):  # fmt: skip
             return 0
-        if tally[MOVED] < MOVED_PX:
+        wider = tally[RISE] > GREW * rise or tally[RISE_ASIDE] > GREW * rise_aside
+        if tally[MOVED] < MOVED_PX and not wider:
             break
     return seen
+
+
+@njit(cache=True, nogil=True)
+def edge_spreads(
+    noise: NDArray[np.float64], tally: NDArray[np.float64], spreads: NDArray[np.float64]
+) -> None:
+    """How far each edge (4,) may be off as a whole, px, by how wide and even its steps are."""
+    for edge in range(4):
+        mixed = mixed_px(tally[RISE + edge % 2], SHARP_RISE_PX)
+        uneven = max(tally[UNEVEN_SIDES + edge] - EVEN, 0.0)
+        blurred = mixed * (noise[PER_BLUR] + noise[PER_RISE] * uneven)
+        spreads[edge] = math.hypot(noise[EDGE] * aliased(mixed), blurred)
 
 
 @njit(cache=True, nogil=True)
@@ -207,14 +181,17 @@ def fit_edges(
     T: NDArray[np.float64],
     points: NDArray[np.float64],
     sigmas: NDArray[np.float64],
+    groups: NDArray[np.int64],
     lens: NDArray[np.float64],
+    spreads: NDArray[np.float64],
     residuals: NDArray[np.float64],
     jacobian: NDArray[np.float64],
     edges: NDArray[np.int64],
     weights: NDArray[np.float64],
     trust: NDArray[np.float64],
+    offsets: NDArray[np.float64],
 ) -> bool:
-    """Moves T (3, 4) to where it fits edge points (n, 2) px; the rest as in `compare`, in px.
+    """Moves T (3, 4) to where it fits edge points (n, 2) px; the rest as in `descend`, in px.
 
     `weights` (n,) are after down-weighting outliers, `trust` (n,) by the points' own sigmas. False
     where there is no pose.
@@ -228,13 +205,15 @@ def fit_edges(
     for i in range(n):
         trust[i] /= most
     descend(
-        kind, half_width, half_height, T, on_plane, trust, FLOOR_PX / scale, STEPS, SETTLED,
-        residuals, jacobian, edges, weights,
+        kind, half_width, half_height, T, on_plane, trust, groups, spreads / scale,
+        FLOOR_PX / scale, STEPS, SETTLED, residuals, jacobian, edges, weights, offsets,
     )  # fmt: skip
     for i in range(n):
         residuals[i] *= scale
         for k in range(6):
             jacobian[i, k] *= scale
+    for k in range(4):
+        offsets[k] *= scale
     before = T[1, 1]
     stands = stand_up(kind, T)
     if before * T[1, 1] < 0.0:

@@ -5,29 +5,44 @@ import pytest
 from edge_places import edge_places
 from raster import BOARD, CAMERA, CAN, board_pose, can_pose
 
+from naod.pose.noise import EdgeNoise
 from naod.pose.reading import read_points
-from naod.pose.uncertainty import EdgeNoise, covariance, misfit_ratio, point_sigma
+from naod.pose.shared import give_way, point_sigma
+from naod.pose.uncertainty import covariance, misfit_ratio
 
 CASES = [(CAN, can_pose((0.02, 0.05, 0.5), 0.5)), (BOARD, board_pose((0.0, 0.1, 0.8), 0.3, 0.4))]
 
 
-INDEPENDENT = EdgeNoise(floor_px=0.05, common_px=0.0, edge_px=0.0, per_point=1.0, fits_px=2.0)
+def noise_of(common_px=0.0, edge_px=0.0):
+    return EdgeNoise(
+        floor_px=0.05,
+        common_px=common_px,
+        edge_px=edge_px,
+        edge_per_blur=0.0,
+        edge_per_rise=0.0,
+        per_point=1.0,
+        fits_px=2.0,
+    )
 
 
-def read(shape, T, offsets):
+INDEPENDENT = noise_of()
+
+
+def read(shape, T, offsets, noise=INDEPENDENT):
     """A pose fitted to edge points so far outside the true outline, in pixels."""
     places, normals = edge_places(shape, T)
-    return read_points(places + offsets[:, None] * normals, T, shape, CAMERA, 0.3, 2.0)
+    return read_points(places + offsets[:, None] * normals, T, shape, CAMERA, 0.3, noise)
 
 
 def misfit(reading):
     fit = reading.fit
-    sigma = point_sigma(fit.residuals, fit.weights, reading.trust, 0.05)
-    return misfit_ratio(fit.residuals, fit.weights, reading.trust, sigma)
+    rest = (fit.groups, fit.offsets)
+    sigma = point_sigma(fit.residuals, fit.weights, reading.trust, *rest, 0.05)
+    return misfit_ratio(fit.residuals, fit.weights, reading.trust, *rest, sigma)
 
 
 def normalised_error(shape, T, offsets, noise):
-    reading = read(shape, T, offsets)
+    reading = read(shape, T, offsets, noise)
     gap = reading.fit.T_camera_object[:3, 3] - T[:3, 3]
     return gap @ np.linalg.solve(covariance(reading, shape, noise)[:3, :3], gap) / 3.0
 
@@ -42,7 +57,7 @@ def test_independent_noise_is_stated_as_it_is(shape, T):
 @pytest.mark.parametrize(("shape", "T"), CASES)
 def test_an_outline_too_wide_or_narrow_as_a_whole_is_stated_too(shape, T):
     rng = np.random.default_rng(8)
-    noise = EdgeNoise(floor_px=0.05, common_px=0.3, edge_px=0.0, per_point=1.0, fits_px=2.0)
+    noise = noise_of(common_px=0.3)
     errors = [
         normalised_error(shape, T, rng.normal(0, 0.1, 240) + rng.normal(0, 0.3), noise)
         for _ in range(150)
@@ -50,10 +65,44 @@ def test_an_outline_too_wide_or_narrow_as_a_whole_is_stated_too(shape, T):
     assert 0.2 < np.mean(errors) < 1.5
 
 
+@pytest.mark.parametrize(("shape", "T"), CASES)
+def test_edges_that_are_each_off_as_a_whole_are_stated_as_they_are(shape, T):
+    rng = np.random.default_rng(10)
+    noise = noise_of(edge_px=0.3)
+    places = edge_places(shape, T)[0]
+    x, y = (places - places.mean(axis=0)).T
+    of = np.empty(240, dtype=int)
+    of[np.argsort(np.arctan2(y, x))] = read(shape, T, np.zeros(240)).fit.edges
+    errors = [
+        normalised_error(shape, T, rng.normal(0, 0.1, 240) + rng.normal(0, 0.3, 4)[of], noise)
+        for _ in range(150)
+    ]
+    assert 0.6 < np.mean(errors) < 1.5
+
+
+def test_offsets_of_edges_are_as_if_they_were_unknowns_of_their_own():
+    """Eliminated from the normal equations, against a system that has them all."""
+    rng = np.random.default_rng(11)
+    J, r, w = rng.normal(size=(40, 6)), rng.normal(size=40), rng.uniform(0.2, 1.0, 40)
+    of, spreads = rng.integers(0, 4, 40), np.array([0.3, 0.6, 0.2, 0.5])
+    shares = np.eye(4)[of]
+    A, b, offsets = (J.T * w) @ J, -(J.T * w) @ r, np.zeros(4)
+    give_way(
+        shares.T @ (w[:, None] * J), shares.T @ w, shares.T @ (w * r), spreads, 1.0, offsets,
+        np.empty(4), A, b,
+    )  # fmt: skip
+    A = np.tril(A) + np.tril(A, -1).T
+    # residual = r + J x - offset, and the offsets are 0 to within their spreads
+    whole = np.hstack([J, -shares])
+    prior = np.diag(np.concatenate([np.zeros(6), spreads**-2.0]))
+    found = np.linalg.solve((whole.T * w) @ whole + prior, -(whole.T * w) @ r)
+    assert np.allclose(np.linalg.solve(A, b), found[:6])
+
+
 def test_the_turn_of_a_can_about_itself_has_no_variance():
     shape, T = CASES[0]
     reading = read(shape, T, np.zeros(240))
-    total = covariance(reading, shape, EdgeNoise(0.3, 0.1, 0.1, 3.0, 1.0))
+    total = covariance(reading, shape, noise_of(common_px=0.1, edge_px=0.1))
     axis = reading.fit.T_camera_object[:3, 1]
     assert axis @ total[3:, 3:] @ axis < 1e-6
     assert np.linalg.eigvalsh(total).min() > -1e-12

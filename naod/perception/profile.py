@@ -1,0 +1,194 @@
+"""Colours along a line across an edge, and those of its two sides."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from naod.geometry.linear import solve_symmetric
+
+NOISE_LEVELS = 3.0
+"""Standard deviation of one channel of one pixel, 8-bit levels."""
+
+SHADING = 0.15
+"""Relative standard deviation of brightness over a plateau inside."""
+
+SHADING_ELSEWHERE = 0.35
+"""The same between places of one object."""
+
+LIKE = 5.0
+"""Standard deviations up to which two colours may be the same."""
+
+MORE_LIKE = 0.35
+"""A colour this many times nearer to the object's than the one beside it is the object's too."""
+
+MIXTURE = 0.2
+"""How far from a straight line mixtures of two colours may lie, of its length: levels are a curve
+of light."""
+
+STILL_RISING = 1.04
+"""A step goes on while the distance from the inner colour grows by such a factor."""
+
+
+@njit(cache=True, nogil=True)
+def colour_at(
+    yuyv: NDArray[np.uint8], x: float, y: float, colours: NDArray[np.float64], k: int
+) -> None:
+    """Bilinear Y, U, V at a place into row k; the pairs' chroma lies between their pixels."""
+    height, width = yuyv.shape[0], yuyv.shape[1]
+    y, x = min(max(y, 0.0), height - 1.0), min(max(x, 0.0), width - 1.0)
+    i, j = min(int(y), max(height - 2, 0)), min(int(x), max(width - 2, 0))
+    below, beside = min(i + 1, height - 1), min(j + 1, width - 1)
+    a, b = y - i, x - j
+    upper = (1.0 - b) * yuyv[i, j, 0] + b * yuyv[i, beside, 0]
+    lower = (1.0 - b) * yuyv[below, j, 0] + b * yuyv[below, beside, 0]
+    colours[k, 0] = (1.0 - a) * upper + a * lower
+    pair = min(max(0.5 * (x - 0.5), 0.0), width // 2 - 1.0)
+    j = min(int(pair), max(width // 2 - 2, 0))
+    b, j, beside = pair - j, 2 * j, 2 * min(j + 1, width // 2 - 1)
+    for c in range(2):
+        upper = (1.0 - b) * yuyv[i, j + c, 1] + b * yuyv[i, beside + c, 1]
+        lower = (1.0 - b) * yuyv[below, j + c, 1] + b * yuyv[below, beside + c, 1]
+        colours[k, 1 + c] = (1.0 - a) * upper + a * lower
+
+
+@njit(cache=True, nogil=True)
+def profile(
+    yuyv: NDArray[np.uint8],
+    place: NDArray[np.float64],
+    normal: NDArray[np.float64],
+    reach: float,
+    step: float,
+    depth: float,
+    colours: NDArray[np.float64],
+) -> int:
+    """Colours from `reach` inside to `reach` outside; no deeper inside than `depth`."""
+    count = 2 * int(reach / step) + 1
+    for k in range(count):
+        s = max((k - count // 2) * step, -depth)
+        colour_at(yuyv, place[0] + s * normal[0], place[1] + s * normal[1], colours, k)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _distance2(
+    colour: NDArray[np.float64], reference: NDArray[np.float64], shading: float
+) -> float:
+    """Squared, in standard deviations of noise and of the reference's brightness."""
+    noise2, square, along, bright = NOISE_LEVELS**2, 0.0, 0.0, 0.0
+    for c in range(3):
+        gap, shade = colour[c] - reference[c], reference[c] - (128.0 if c else 0.0)
+        square += gap * gap
+        along += gap * shade
+        bright += shade * shade
+    return (square - along * along / (noise2 / shading**2 + bright)) / noise2
+
+
+@njit(cache=True, nogil=True)
+def is_of(
+    inner: NDArray[np.float64], outer: NDArray[np.float64], palette: NDArray[np.float64]
+) -> bool:
+    """Whether the inner side of an edge has one of an object's colours (n, 3), or nearly.
+
+    What covers an edge of the object ends in an edge of its own.
+    """
+    own = beside = np.inf
+    for k in range(palette.shape[0]):
+        own = min(own, _distance2(inner, palette[k], SHADING_ELSEWHERE))
+        beside = min(beside, _distance2(outer, palette[k], SHADING_ELSEWHERE))
+    return palette.shape[0] == 0 or own < max(LIKE**2, MORE_LIKE**2 * beside)
+
+
+@njit(cache=True, nogil=True)
+def is_between(
+    colour: NDArray[np.float64], inner: NDArray[np.float64], outer: NDArray[np.float64]
+) -> bool:
+    """Whether a colour can be a mixture of two: near the line between them."""
+    along = span2 = gap2 = 0.0
+    for c in range(3):
+        along += (colour[c] - inner[c]) * (outer[c] - inner[c])
+        span2 += (outer[c] - inner[c]) ** 2
+        gap2 += (colour[c] - inner[c]) ** 2
+    if span2 < 1.0 or along < 0.0:
+        return False
+    aside2 = gap2 - along * along / span2
+    return along < (1.0 + MIXTURE) * span2 and aside2 < max(
+        (LIKE * NOISE_LEVELS) ** 2, MIXTURE**2 * span2
+    )
+
+
+@njit(cache=True, nogil=True)
+def outer_side(
+    colours: NDArray[np.float64], count: int, few: int, inner: NDArray[np.float64]
+) -> int:
+    """First of `few` samples on the outer side of the first step away from the inner colour.
+
+    Further out there may be other things still. `count` where there is no step.
+    """
+    total = best = 0.0
+    first = count
+    for k in range(count):
+        total += LIKE - min(math.sqrt(_distance2(colours[k], inner, SHADING)), 2.0 * LIKE)
+        if total >= best:
+            best, first = total, k + 1
+    if first + few > count:
+        return count
+    top, at = _distance2(colours[first], inner, SHADING), first
+    for k in range(first + 1, count - few + 1):
+        distance2 = _distance2(colours[k], inner, SHADING)
+        if distance2 > STILL_RISING**2 * top:
+            top, at = distance2, k
+        elif k - at > 1:
+            break
+    return at
+
+
+@njit(cache=True, nogil=True)
+def plateau(
+    colours: NDArray[np.float64],
+    first: int,
+    last: int,
+    mean: NDArray[np.float64],
+    scatter: NDArray[np.float64],
+) -> None:
+    """Mean of rows first to last - 1, and half their covariance added to `scatter`."""
+    n = last - first
+    for c in range(3):
+        mean[c] = 0.0
+        for k in range(first, last):
+            mean[c] += colours[k, c] / n
+    for k in range(first, last):
+        for c in range(3):
+            for d in range(c + 1):
+                scatter[c, d] += 0.5 * (colours[k, c] - mean[c]) * (colours[k, d] - mean[d]) / n
+
+
+@njit(cache=True, nogil=True)
+def contrast_of(
+    inner: NDArray[np.float64],
+    outer: NDArray[np.float64],
+    scatter: NDArray[np.float64],
+    direction: NDArray[np.float64],
+) -> float:
+    """Contrast of two plateaus along the direction that tells them apart best.
+
+    `direction` is scaled so that it takes the inner plateau to the outer one in a step of 1.
+    `scatter` (3, 3), lower half, is theirs, and is used up.
+    """
+    gap = np.empty(3)
+    for c in range(3):
+        gap[c] = outer[c] - inner[c]
+        scatter[c, c] += NOISE_LEVELS**2
+        for d in range(c + 1):
+            shade_c = inner[c] - (128.0 if c else 0.0)
+            scatter[c, d] += SHADING**2 * shade_c * (inner[d] - (128.0 if d else 0.0))
+    solve_symmetric(scatter, gap, direction)
+    contrast2 = direction[0] * gap[0] + direction[1] * gap[1] + direction[2] * gap[2]
+    if contrast2 < 1e-6:
+        return 0.0
+    for c in range(3):
+        direction[c] /= contrast2
+    return math.sqrt(contrast2)

@@ -1,0 +1,44 @@
+"""How wrong edge points are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FLOOR, COMMON, EDGE, PER_BLUR, PER_RISE, PER_POINT = range(6)
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeNoise:
+    """How wrong edge points are, in pixels.
+
+    `floor_px`: least standard deviation of one point. `common_px`: the whole outline too wide or
+    too narrow, `edge_px`: each edge by itself, both where it is sharp. `edge_per_blur`: px more for
+    each over which motion mixes light there. `edge_per_rise`: px over which the sides of a step go
+    on as they rise where they are seen: so much of the mixing an edge may be off. `per_point`:
+    neighbours that err together. `fits_px`: a point further away belongs to something else.
+    """
+
+    floor_px: float
+    common_px: float
+    edge_px: float
+    edge_per_blur: float
+    edge_per_rise: float
+    per_point: float
+    fits_px: float
+
+    @property
+    def figures(self) -> NDArray[np.float64]:
+        """(6,) as the kernels take them."""
+        return np.array(
+            [
+                self.floor_px,
+                self.common_px,
+                self.edge_px,
+                self.edge_per_blur,
+                self.edge_per_rise,
+                self.per_point,
+            ]
+        )
