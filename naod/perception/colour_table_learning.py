@@ -14,10 +14,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from naod.perception.blurring import light_from_yuv
+from naod.perception.blurring import light_from_yuv, yuv_from_light
 from naod.perception.colour_model import ColourModel, ColourTable, Region, learn
 from naod.perception.colour_samples import SampleSettings, Seen, sampled
-from naod.perception.colour_table import CELLS, Cells, packed, smoothed
+from naod.perception.colour_table import CELLS, Cells, cells_of, packed, smoothed
 from naod.perception.energy import STEPS
 from naod.perception.growing import grown, region_mask
 from naod.perception.reduction import Reduction
@@ -44,7 +44,10 @@ class TableSettings(msgspec.Struct, frozen=True):
     made up, the rest being from elsewhere in the picture. `fine_bins`, `coarse_bins`: standard
     deviations of smoothing, `coarse`: share of the latter. `object_unknown`,
     `background_unknown`: shares of colours never met. `rarity`: nat that always speak against the
-    object. `cap`: greatest log-likelihood ratio.
+    object. `cap`: greatest log-likelihood ratio. `usual`: nat by which an object of one colour is
+    likelier where it was learnt, the mean of the pixels that speak for it. One of many colours, or
+    among things of its colours, is scaled up to that, by `gain_max` at the most: what sees it later
+    goes by what is usual.
     """
 
     samples: SampleSettings = SampleSettings()
@@ -59,6 +62,8 @@ class TableSettings(msgspec.Struct, frozen=True):
     background_unknown: float = 0.3
     rarity: float = 1.1
     cap: float = 6.0
+    usual: float = 4.5
+    gain_max: float = 3.0
     seed: int = 0
 
 
@@ -75,12 +80,15 @@ def learn_table(
     rng = np.random.default_rng(settings.seed)
     chosen = np.unique(np.linspace(0, len(frames) - 1, FRAMES_MAX).astype(np.int64))
     object_, behind = np.zeros(CELLS), np.zeros(CELLS)
+    shown = np.zeros(CELLS)
     for n in chosen:
         light, inside, unsure = marked(frames[n], region)
+        cells = cells_of(yuv_from_light(light[inside]))
+        shown += np.bincount(cells, minlength=CELLS) / (len(chosen) * len(cells))
         seen = sampled(light, inside, unsure, settings.samples, rng)
         object_ += _object_shares(seen, settings) / len(chosen)
         behind += _background_shares(seen, settings) / len(chosen)
-    return table_model(model, _ratios(object_, behind, settings))
+    return table_model(model, _ratios(object_, behind, shown, settings))
 
 
 def table_model(model: ColourModel, table: Cells) -> ColourTable:
@@ -115,11 +123,15 @@ def _background_shares(seen: Seen, settings: TableSettings) -> Counts:
     return shares / max(float(shares.sum()), 1e-9)
 
 
-def _ratios(object_: Counts, behind: Counts, settings: TableSettings) -> Cells:
-    """Steps of each cell."""
+def _ratios(object_: Counts, behind: Counts, shown: Counts, settings: TableSettings) -> Cells:
+    """Steps of each cell; `shown`: shares of the object's colours where it was learnt."""
     mine = _density(object_, settings.object_unknown, settings)
     other = _density(behind, settings.background_unknown, settings)
-    nats = np.clip(np.log(other / mine) + settings.rarity, -settings.cap, settings.cap)
+    nats = np.log(other / mine) + settings.rarity
+    speaks = shown * (nats < 0.0)
+    told = -float(speaks @ nats) / max(float(speaks.sum()), 1e-9)
+    gain = min(max(settings.usual / max(told, 1e-9), 1.0), settings.gain_max)
+    nats = np.clip(gain * nats, -settings.cap, settings.cap)
     grains = np.rint(nats * (STEPS / GRAIN_STEPS)).astype(np.int16)
     return grains * np.int16(GRAIN_STEPS)
 
