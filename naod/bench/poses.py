@@ -16,6 +16,7 @@ from naod.bench.score import width_px
 from naod.bench.table import Report
 from naod.config import SegmentationConfig
 from naod.finding.find import find_object
+from naod.finding.hue import Colours
 from naod.geometry.camera import PinholeCamera, nominal_camera
 from naod.perception.learning import learn_model
 from naod.perception.segmenter import Segmenter
@@ -83,7 +84,8 @@ def measure(sequence: Sequence, errors: dict[Estimator, Errors]) -> None:
         if frame.mask is None or T is None or not _whole(shape, T, camera):
             continue
         segmentation = segmenter.segment(frame.yuyv)
-        found = find_object(segmentation, shape, camera, None, segmenter.settings)
+        colours = Colours(frame.yuyv, model)
+        found = find_object(segmentation, shape, camera, None, segmenter.settings, colours=colours)
         for estimator, kept in errors.items():
             kept.frames += 1
             if found is None:

@@ -16,6 +16,7 @@ from naod.bench.table import Report
 from naod.bench.timing import Timing, interleaved
 from naod.config import SegmentationConfig
 from naod.finding.find import find_object
+from naod.finding.hue import Colours
 from naod.geometry.camera import nominal_camera
 from naod.perception.blob import find_blob
 from naod.perception.learning import learn_model
@@ -102,8 +103,10 @@ def _object(taught: Taken, yuyvs: list[NDArray[np.uint8]]) -> Work:
     camera = nominal_camera("v6", *segmenter.reduction.size)
 
     def find(n: int) -> object:
-        segmentation = segmenter.segment(yuyvs[n % len(yuyvs)])
-        return find_object(segmentation, shape, camera, None, segmenter.settings)
+        yuyv = yuyvs[n % len(yuyvs)]
+        colours = Colours(yuyv, segmenter.model)
+        segmentation = segmenter.segment(yuyv)
+        return find_object(segmentation, shape, camera, None, segmenter.settings, colours=colours)
 
     return find
 
@@ -117,7 +120,8 @@ def _pose(taught: Taken, yuyvs: list[NDArray[np.uint8]]) -> Work:
     def pose(n: int) -> object:
         yuyv = yuyvs[n % len(yuyvs)]
         segmentation = segmenter.segment(yuyv)
-        found = find_object(segmentation, shape, camera, None, segmenter.settings)
+        colours = Colours(yuyv, segmenter.model)
+        found = find_object(segmentation, shape, camera, None, segmenter.settings, colours=colours)
         return None if found is None else locate(yuyv, found.blob, shape, camera)
 
     return pose

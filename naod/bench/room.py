@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-import cv2
 import msgspec
-import numpy as np
 
 from hal.scenario import Scenario, SceneSection, ThingSection
+from naod.finding.walls import paint_wall
 from naod.pose.objects import Cylinder, ObjectShape, Rectangle
 
 Thing = Literal["can", "board"]
@@ -53,7 +52,7 @@ def scenario_of(thing: Thing, room: Room, seed: int, folder: Path, absent: bool)
     background: str = room.walls
     if room.walls == "picture":
         background = "wall.png"
-        _paint_wall(folder / background, seed)
+        paint_wall(folder / background, seed)
     return Scenario(
         object=_thing(thing, absent),
         distractor=_look_alikes(thing) if room.look_alikes else (),
@@ -106,16 +105,3 @@ def _look_alikes(thing: Thing) -> tuple[ThingSection, ...]:
             position=(1.45, -0.35, 0.45),
         ),
     )
-
-
-def _paint_wall(path: Path, seed: int) -> None:
-    """Patches of many colours and sizes."""
-    rng = np.random.default_rng([seed, 77])
-    image = np.full((512, 512, 3), rng.uniform(90, 200, 3), dtype=np.uint8)
-    for _ in range(150):
-        centre = tuple(int(c) for c in rng.integers(0, 512, 2))
-        axes = tuple(int(a) for a in rng.integers(6, 60, 2))
-        grey = rng.uniform(20.0, 235.0)
-        colour = np.clip(grey + rng.normal(0.0, 35.0, 3), 0, 255).tolist()
-        cv2.ellipse(image, centre, axes, float(rng.uniform(0, 180)), 0, 360, colour, -1)
-    cv2.imwrite(str(path), image)

@@ -18,9 +18,14 @@ from naod.perception.blob import blob_of_mask
 EXPOSURES_S = (0.0, 0.010, 0.033)
 ROOMS: Mapping[str, Room] = {"home": HOME, **UNSEEN}
 HOME_SEED = 0
+EMPTY_ROOMS = 5
+"""Rooms of each kind that are walked through without the object, each furnished in another way:
+what is taken for it in one picture of a room is so in many."""
+EMPTY_SEEDS = 400
 THINGS: tuple[Thing, ...] = ("can", "board")
 
 Progress = Callable[[str], None]
+Frames = tuple[Frame, ...]
 Row = tuple[str | float | int | None, ...]
 
 
@@ -40,8 +45,12 @@ def run(
     settings: WalkSettings | None = None,
     rooms: Mapping[str, Room] = ROOMS,
     things: tuple[Thing, ...] = THINGS,
+    empty_rooms: int = EMPTY_ROOMS,
 ) -> Report:
-    """Everything is learnt in the first of the rooms and tried in all of them."""
+    """Everything is learnt in the first of the rooms and tried in all of them.
+
+    empty_rooms: how many of each kind are tried without the object.
+    """
     settings = settings or WalkSettings()
     rows: list[Row] = []
     for thing in things:
@@ -51,20 +60,32 @@ def run(
         for number, (name, room) in enumerate(rooms.items()):
             progress(f"{thing}, {name}")
             there = msgspec.structs.replace(at_home, room=room, seed=HOME_SEED + 7 * number)
-            rows += rows_of(f"{thing}, {name}", finders, there, known=number == 0)
+            empty = _empty(there, empty_rooms)
+            rows += rows_of(f"{thing}, {name}", finders, there, empty, known=number == 0)
     columns = ["walk", "model"]
     for exposure in EXPOSURES_S:
         columns += [f"box IoU {1e3 * exposure:.0f} ms", "lost %"]
     columns += ["of learnt there", "found absent %", "frames until found again"]
-    notes = ("box IoU: median, a lost frame counting 0; learnt there: at the longest exposure",)
+    notes = (
+        "box IoU: median, a lost frame counting 0; learnt there: at the longest exposure",
+        f"absent: {empty_rooms} rooms of each kind, at the longest exposure",
+    )
     return Report("rooms", tuple(columns), tuple(rows), notes)
 
 
-def rows_of(name: str, finders: Mapping[str, Finder], room: WalkSettings, known: bool) -> list[Row]:
-    """Everybody in one room; those who were taught elsewhere beside those taught there."""
+def rows_of(
+    name: str,
+    finders: Mapping[str, Finder],
+    room: WalkSettings,
+    empty: Frames,
+    known: bool,
+) -> list[Row]:
+    """Everybody in one room; those who were taught elsewhere beside those taught there.
+
+    empty: what is seen in rooms of this kind without the object.
+    """
     walk = Walk(room)
     taken = [walk.taken(f"{exposure}", exposure) for exposure in EXPOSURES_S]
-    empty = walk.without("absent", EXPOSURES_S[-1])
     native = finders if known else finders_of(taken[0])
     rows = []
     for who, find in finders.items():
@@ -72,12 +93,21 @@ def rows_of(name: str, finders: Mapping[str, Finder], room: WalkSettings, known:
         tallies = [tally(find, sequence) for sequence in taken]
         here = tallies[-1] if known else tally(native[who], taken[-1])
         find.restart()
-        false = [find(frame).corners_px is not None for frame in empty.frames]
+        false = [find(frame).corners_px is not None for frame in empty]
         figures = [x for t in tallies for x in (t.box_iou, 100.0 * t.lost)]
         relative = tallies[-1].box_iou / here.box_iou if here.box_iou > 0.0 else None
-        again = seen_again(find, empty.frames, taken[-1].frames)
+        again = seen_again(find, empty[: room.count], taken[-1].frames)
         rows.append((name, who, *figures, relative, 100.0 * float(np.mean(false)), again))
     return rows
+
+
+def _empty(room: WalkSettings, rooms: int) -> Frames:
+    """The walk through several rooms of one kind after the object was taken away, blurred."""
+    seeds = [room.seed] + [EMPTY_SEEDS + 7 * n + room.seed for n in range(1, rooms)]
+    walks = [Walk(msgspec.structs.replace(room, seed=seed)) for seed in seeds]
+    return tuple(
+        frame for walk in walks for frame in walk.without("absent", EXPOSURES_S[-1]).frames
+    )
 
 
 def tally(find: Finder, sequence: Sequence) -> Tally:

@@ -16,6 +16,7 @@ from naod.cli.pictures import VIDEOS, Picture, find_files, read_image, read_pict
 from naod.cli.segment import Segmenters
 from naod.errors import InputError
 from naod.finding.find import find_object
+from naod.finding.hue import Colours
 from naod.geometry.camera import PinholeCamera, load_camera
 from naod.perception.colour_model import load_model
 from naod.pose.locate import locate, locate_mask
@@ -72,7 +73,8 @@ def _locator(args: argparse.Namespace, shape: ObjectShape, camera: PinholeCamera
     def with_model(picture: Picture, _: NDArray[np.uint8] | None) -> ObjectPose | None:
         segmenter = segmenters.of(picture)
         segmentation = segmenter.segment(picture.yuyv)
-        found = find_object(segmentation, shape, camera, None, segmenter.settings)
+        colours = Colours(picture.yuyv, segmenter.model)
+        found = find_object(segmentation, shape, camera, None, segmenter.settings, colours=colours)
         if found is None:
             return None
         return locate(picture.yuyv, found.blob, shape, camera, estimator)

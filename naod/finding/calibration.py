@@ -3,6 +3,7 @@
 Rooms are rendered, some without the object, some with other things of its colour. Every group of
 regions in a picture is a sample: it is the object, or it is not. Two rounds: the second one counts
 most what the first would have chosen. The rooms of `UNSEEN` are only to tell how well it went.
+What counts where no shape is known is kept: it was fitted to rooms with fewer look-alikes.
 """
 
 from __future__ import annotations
@@ -17,27 +18,33 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from naod.config import SegmentationConfig
 from naod.files import write_whole
 from naod.finding.find import Expected, Scored, scored_groups
-from naod.finding.presence import CASES, TERMS, WEIGHTS, terms
+from naod.finding.hue import Colours
+from naod.finding.learnt import THINGS, Learnt
+from naod.finding.presence import CASES, TERMS, WEIGHTS, fitted_weights, terms
 from naod.finding.regions import cores_of, regions_of
 from naod.finding.regression import fit_logistic, sigmoid
-from naod.finding.rooms import SIZE, Room, RoomSpec, Thing, View
-from naod.perception.colour_model import Region
-from naod.perception.learning import KINDS, learn_model
-from naod.perception.segmenter import Segmentation, Segmenter
+from naod.finding.rooms import Room, RoomSpec, View
+from naod.perception.learning import DEFAULT_KIND, ModelKind
+from naod.perception.segmenter import Segmentation
 
 Floats = NDArray[np.float64]
 
-THINGS: tuple[Thing, ...] = ("can", "ribbon", "board")
-LEARN, UNSEEN = range(100, 148), range(300, 312)
+LEARN, UNSEEN = range(100, 190), range(300, 336)
 VIEWS = 10
 SHOWN_SEEDS = (0, 1)
 """Rooms in which the colours are learnt, in turn."""
 
 LIGHTS = (0.6, 0.8, 1.0, 1.3, 1.5)
 OTHERS = (0, 0, 0, 1, 2, 3)
+NEAR = (0, 1, 2, 3)
+WALLS = ("clutter", "clutter", "picture", "plain")
+TINT_STD = 0.05
+"""Of the logarithm of red and blue light against green."""
+
+CONTRAST_STD = 0.05
+"""Of the logarithm of a camera's exponent: exposure and gain bend its curve."""
 
 IS_IT, IS_NOT = 0.6, 0.4
 """Overlap of hulls above which a group is the object, and below which it is not."""
@@ -46,21 +53,30 @@ MIDDLE, GLIMPSE, WITHIN = 0.3, 0.05, 0.9
 """So much overlap is enough of a group that lies within the object, as blur leaves its middle; with
 less, or in pieces beside a ribbon, it is a matter of taste, down to a glimpse."""
 
-AGAINST = 0.1
+AGAINST = 0.3
 """How much a group counts that would not have been chosen."""
 
 HEADER = """# Log-odds that a group of regions is the object; see naod/finding/presence.py.
 # Made by `python -m naod.finding.calibration`.
 """
 
-ALIKE = 0.25
+ALIKE = 0.5
 """How much a whole region counts in a room with other things of the object's very colour: many of
 them say nothing of colours."""
 
 MISTAKEN = 2.0
 """How much a thing of another colour counts whose shape is known not to be the object's."""
 
-SIGNS = {"colour": 1, "ring": -1, "lack": -1, "gap": -1, "aspect": -1, "turn": -1, "pale": -1}
+CUT_ALIKE = 1.5
+"""How much one of its very colour counts on the picture's border: the object is there less often
+than here, for the head is turned towards it."""
+
+DEFAULT_COUNT = 3.0
+"""How much the kind of model counts that is learnt unless another is asked for."""
+
+AGAINST_IT = ("ring", "lack", "gap", "aspect", "turn", "pale", "hue", "tone", "washed")
+SIGNS = {"colour": 1} | dict.fromkeys(AGAINST_IT, -1)
+OF_RENDERED = ("lack", "hue", "tone", "washed", "blind")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +84,8 @@ class Sample:
     """A group of regions. `picture` tells those of one picture; `overlap` is that of hulls.
 
     `within`: share of the group's hull that is in the object's. `alike`: other things of the
-    object's colour stand in the room. `banded`: a ribbon parts the object's colour.
+    object's colour stand in the room. `banded`: a ribbon parts the object's colour. `default`: the
+    model is of the kind that is learnt unless another is asked for.
     """
 
     picture: int
@@ -79,6 +96,7 @@ class Sample:
     within: float
     alike: bool
     banded: bool
+    default: bool
 
     @property
     def told(self) -> bool | None:
@@ -103,41 +121,30 @@ def specs(seeds: Sequence[int]) -> list[RoomSpec]:
                 others=int(rng.choice(OTHERS)),
                 floor=thing != "board" and bool(rng.random() < 0.4),
                 light=float(rng.choice(LIGHTS)),
+                near=int(rng.choice(NEAR)),
+                walls=str(rng.choice(WALLS)),
+                tint=(TINT_STD * float(rng.normal()), TINT_STD * float(rng.normal())),
+                contrast=CONTRAST_STD * float(rng.normal()),
             )
         )
     return made
 
 
-class Learnt:
-    """Each thing's colour as learnt in one room, by every kind of model."""
-
-    def __init__(self, folder: Path, seed: int = 0) -> None:
-        self.shown: dict[Thing, tuple[NDArray[np.uint8], Region]] = {
-            thing: Room(RoomSpec(seed, thing), folder).shown() for thing in THINGS
-        }
-        self.settings = SegmentationConfig()
-        self.segmenters = {
-            thing: [
-                Segmenter(learn_model([picture], region, kind), self.settings, SIZE)
-                for kind in KINDS
-            ]
-            for thing, (picture, region) in self.shown.items()
-        }
-
-
 def samples_of(room: Room, views: Sequence[View], learnt: Learnt, first: int) -> Iterator[Sample]:
     """Every group in every view, with the shape known and unknown; pictures count from `first`."""
     for number, view in enumerate(views):
-        for segmenter in learnt.segmenters[room.spec.thing]:
-            segmentation = segmenter.segment(view.yuyv)
+        for eye in learnt.eyes[room.spec.thing]:
+            segmentation = eye.segmenter.segment(view.yuyv)
             truth = None if view.mask is None else _hull(_reduced(view.mask, segmentation.scale))
             # the loop knows the blur while it turns its head, not always
             blur_px = view.blur_px if number % 2 else 0.0
-            known = Expected(room.shape, room.camera, None, blur_px)
-            for expected in (known, Expected()):
+            colours = Colours(view.yuyv, eye.model)
+            known = Expected(room.shape, room.camera, None, blur_px, colours)
+            blind = Expected(room.shape, room.camera, None, blur_px)
+            for expected in (known, blind, Expected()):
                 first += 1
                 for found in _scored(segmentation, expected, learnt.settings.pixels_min):
-                    yield from _samples(found, truth, first, room.spec)
+                    yield from _samples(found, truth, first, room.spec, eye.kind)
 
 
 def _scored(segmentation: Segmentation, expected: Expected, pixels_min: int) -> Iterator[Scored]:
@@ -149,7 +156,7 @@ def _scored(segmentation: Segmentation, expected: Expected, pixels_min: int) -> 
 
 
 def _samples(
-    found: Scored, truth: NDArray[np.bool_] | None, picture: int, spec: RoomSpec
+    found: Scored, truth: NDArray[np.bool_] | None, picture: int, spec: RoomSpec, kind: ModelKind
 ) -> Iterator[Sample]:
     rows = terms(found.measures)
     for k in range(len(rows)):
@@ -161,7 +168,7 @@ def _samples(
             within = shared / np.count_nonzero(own)
         case = ("cut" if found.cuts[k] else "whole") if found.known else "unknown"
         offset = float(found.offsets[k])
-        kinds = (spec.others > 0, spec.thing == "ribbon")
+        kinds = (spec.others > 0, spec.thing == "ribbon", kind == DEFAULT_KIND)
         yield Sample(picture, case, rows[k], offset, overlap, within, *kinds)
 
 
@@ -199,15 +206,18 @@ def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Float
     signs = np.array([SIGNS.get(name, 0) for name in TERMS], dtype=np.float64)
     rows = np.array([s.row for s in kept])
     if case == "unknown":
-        # the things rendered are convex, what people look for need not be
-        rows[:, TERMS.index("lack")] = 0.0
+        # the things rendered are convex and of one hue, what people look for need not be
+        rows[:, [TERMS.index(name) for name in OF_RENDERED]] = 0.0
     return fit_logistic(rows, told, counts, signs)
 
 
 def _importance(sample: Sample) -> float:
-    if sample.alike:
-        return ALIKE if sample.case == "whole" else 1.0
-    return 1.0 if sample.told or sample.case == "unknown" else MISTAKEN
+    count = DEFAULT_COUNT if sample.default else 1.0
+    if sample.alike and sample.case == "whole":
+        return ALIKE * count
+    if sample.told or sample.case == "unknown":
+        return count
+    return count * (CUT_ALIKE if sample.alike else MISTAKEN)
 
 
 def reliability(samples: Sequence[Sample], weights: dict[str, Floats]) -> tuple[float, Floats]:
@@ -254,6 +264,8 @@ def main() -> None:
     argparse.ArgumentParser(description=__doc__).parse_args()
     with tempfile.TemporaryDirectory() as folder:
         weights = fitted(gathered(LEARN, VIEWS, Path(folder)))
+        # rooms full of things of nearly the object's colour are not like pictures people choose
+        weights["unknown"] = fitted_weights()["unknown"]
         unseen = gathered(UNSEEN, VIEWS, Path(folder))
     rounded = {case: np.round(weights[case], 3) for case in CASES}
     write_whole(WEIGHTS, HEADER + text_of(rounded))

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from naod.config import SegmentationConfig
 from naod.finding.expectation import agreement
 from naod.finding.groups import groups_of
-from naod.finding.measure import NO_SHAPE, measure_groups
+from naod.finding.hue import CLIP, NO_OWN, NO_PICTURE, Colours
+from naod.finding.measure import COLOUR, CORE, NO_SHAPE, measure_groups
 from naod.finding.presence import colour_and_shape, plausibility, probability
 from naod.finding.regions import Regions, cores_of, regions_of
 from naod.geometry.camera import PinholeCamera
@@ -22,7 +23,7 @@ from naod.pose.contour import figures
 from naod.pose.objects import ObjectShape
 from naod.pose.prior import Prior
 
-SURE_ODDS = 3.0
+SURE_ODDS = 1.5
 """Log-odds from which nobody looks further."""
 
 CORE_ODDS = 0.5
@@ -48,9 +49,10 @@ def find_object(
     prior: Prior | None,
     settings: SegmentationConfig,
     blur_px: float = 0.0,
+    colours: Colours | None = None,
 ) -> Candidate | None:
     """The object in a picture; None when it is more likely not there (`presence_min`)."""
-    best = likeliest(segmentation, shape, camera, prior, settings.pixels_min, blur_px)
+    best = likeliest(segmentation, shape, camera, prior, settings.pixels_min, blur_px, colours)
     return best if best is not None and best.probability >= settings.presence_min else None
 
 
@@ -61,16 +63,18 @@ def likeliest(
     prior: Prior | None,
     pixels_min: int,
     blur_px: float = 0.0,
+    colours: Colours | None = None,
 ) -> Candidate | None:
     """What is likeliest the object, however unlikely; None where nothing has its colour.
 
     shape and camera: without both, colour alone decides. prior: where the object is expected, which
     counts for or against. blur_px: how far it moves through the full picture during the exposure, 0
-    where nobody knows. Cost does not grow with clutter: only some regions are looked at, and their
-    cores only where no region is surely it.
+    where nobody knows. colours: the picture itself, in which hue and tone are seen; without it,
+    what is likeliest is less sure. Cost does not grow with clutter: only some regions are looked
+    at, and their cores only where no region is surely it.
     """
     regions = regions_of(segmentation)
-    expected = Expected(shape, camera, prior, blur_px)
+    expected = Expected(shape, camera, prior, blur_px, colours)
     scored = scored_groups(segmentation, regions, expected, pixels_min)
     if scored is None:
         return None
@@ -111,6 +115,7 @@ class Expected:
     camera: PinholeCamera | None = None
     prior: Prior | None = None
     blur_px: float = 0.0
+    colours: Colours | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +160,7 @@ def scored_groups(
     if not len(groups):
         return None
     sizes = _figures(shape if known else None)
+    colours = expected.colours
     measures, cuts = measure_groups(
         regions.labels,
         regions.table,
@@ -163,7 +169,13 @@ def scored_groups(
         groups,
         sizes,
         expected.blur_px / grain,
+        colours.picture if colours else NO_PICTURE,
+        colours.own if colours else NO_OWN,
     )
+    if colours is not None:
+        # a model that is never quite sure says no less of what it is as sure of as it can be
+        surer = CLIP / colours.peak
+        measures[:, [COLOUR, CORE]] = np.minimum(measures[:, [COLOUR, CORE]] * surer, CLIP)
     offsets = np.zeros(len(groups))
     if shape is not None and camera is not None:
         offsets += plausibility(measures, math.sqrt(camera.fx * camera.fy) / grain)

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.finding.hue import CLIP, Own, look_at_middle
 from naod.finding.hull import (
     Points,
     four_sides,
@@ -32,16 +33,14 @@ from naod.perception.energy import STEPS
 
 NO_SHAPE, CYLINDER, RECTANGLE = range(3)
 
-CLIP = 6.0
-"""Nat: one pixel says no more than this for or against, its colour model may be wrong."""
-
-COLOUR, RING, PIXELS, FILL, GAP, ASPECT, TURN, ON_SIDE, METRE, X, Y, CORE = range(12)
-MEASURES = 12
+COLOUR, RING, PIXELS, FILL, GAP, ASPECT, TURN, ON_SIDE, METRE, X, Y, CORE, HUE, TONE = range(14)
+MEASURES = 14
 """Columns: mean log-likelihood ratio (nat, positive = object) of the group's pixels inside the
 outline, and of all around it; mask pixels inside; share of those that are the group's; mean
 distance of hull and outline in tolerances; misfit of proportions in tolerances; a rectangle's turn
 out of the picture's plane (rad); 1 where it lies; mask pixels per metre; middle of the box; ratio
-(nat) that a quarter of the pixels exceed, which blur leaves alone as long as it is short."""
+(nat) that a quarter of the pixels exceed, which blur leaves alone as long as it is short; how
+far its hue and tone are from the object's in tolerances, -1 and 0 where there is no picture."""
 
 USUAL_PIXELS = 160 * 120
 """Pixels are counted as of a mask of this size: what matters is their share of the picture."""
@@ -119,7 +118,7 @@ def _colour_inside(
                 own += 1
                 counts[min(max(int(ratio * _BINS_A_NAT), 0), _BINS - 1)] += 1
     out[COLOUR] = inside / max(own, 1)
-    out[PIXELS] = many * (USUAL_PIXELS / labels.size)
+    out[PIXELS] = many
     out[FILL] = own / max(many, 1)
     surer, level = 0, _BINS
     while level > 0 and 4 * surer < own:
@@ -212,12 +211,14 @@ def measure(
     shape: tuple[int, float, float],
     cut: int,
     blur: float,
+    picture: NDArray[np.uint8],
+    own: Own,
     out: NDArray[np.float64],
 ) -> None:
     """Measures (MEASURES,) of the regions with `wanted[label]`.
 
     shape: kind, half width (or radius) and half height in m. cut: as in `silhouette`. blur: its
-    length in mask pixels, 0 where nobody knows.
+    length in mask pixels, 0 where nobody knows. picture, own: as `look_at_middle` has them.
     """
     height, width = labels.shape
     top, bottom, left, right = height, -1, width, -1
@@ -233,17 +234,26 @@ def measure(
     smallest_box(hull, corners, box)
     outline = np.empty((max(corners, OUTLINE_MAX), 2))
     count = _shaped(hull, corners, box, shape, cut, blur, outline, out)
-    spans, whole = np.empty((height, 2)), np.empty((height, 2))
-    _spans(hull, corners, whole)
-    _spans(outline, count, spans)
     least = max(min(box[4], box[5]), 1.0)
     ring = min(max(round(0.15 * least), 2), 6)
-    _colour_inside(labels, wanted, differences, spans, out)
-    _colour_around(differences, spans, ring, out)
+    # nothing is looked at beyond these rows
+    low = max(math.floor(min(outline[:count, 1].min(), top)) - ring - 2, 0)
+    high = min(math.ceil(max(outline[:count, 1].max(), bottom)) + ring + 3, height)
+    hull[:corners, 1] -= low
+    outline[:count, 1] -= low
+    spans, whole = np.empty((high - low, 2)), np.empty((high - low, 2))
+    _spans(hull, corners, whole)
+    _spans(outline, count, spans)
+    _colour_inside(labels[low:high], wanted, differences[low:high], spans, out)
+    _colour_around(differences[low:high], spans, ring, out)
+    out[PIXELS] *= USUAL_PIXELS / labels.size
     around = 2.0 * (box[4] + box[5])
     out[GAP] = _difference(spans, whole) / around
     out[GAP] /= GAP_PX + GAP_SHARE * least + GAP_BLUR * blur
     out[X], out[Y] = box[0], box[1]
+    out[HUE] = -1.0
+    if picture.size:
+        out[HUE], out[TONE] = look_at_middle(picture, labels, wanted, box, own)
 
 
 @njit(cache=True, nogil=True)
@@ -267,10 +277,13 @@ def measure_groups(
     groups: NDArray[np.int64],
     shape: tuple[int, float, float],
     blur: float,
+    picture: NDArray[np.uint8],
+    own: Own,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Measures (m, MEASURES) of groups as `groups_of` gives them, and the borders that cut each.
 
-    blur: length of the motion blur in mask pixels, 0 where nobody knows.
+    blur: length of the motion blur in mask pixels, 0 where nobody knows. picture, own: as
+    `look_at_middle` has them, an empty picture where there is none.
     """
     out = np.zeros((len(groups), MEASURES))
     cuts = np.zeros(len(groups), dtype=np.int64)
@@ -280,5 +293,5 @@ def measure_groups(
         for n in range(len(chosen)):
             wanted[chosen[n] + 1] = bool(groups[g] >> n & 1)
         cuts[g] = _cut_of(table, wanted, *labels.shape)
-        measure(labels, table, wanted, differences, shape, cuts[g], blur, out[g])
+        measure(labels, table, wanted, differences, shape, cuts[g], blur, picture, own, out[g])
     return out, cuts

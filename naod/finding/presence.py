@@ -23,10 +23,12 @@ from naod.finding.measure import (
     CORE,
     FILL,
     GAP,
+    HUE,
     METRE,
     ON_SIDE,
     PIXELS,
     RING,
+    TONE,
     TURN,
 )
 
@@ -42,19 +44,24 @@ LYING_COST = 3.5
 FILL_ENOUGH, FILL_TOLERANCE = 0.7, 0.1
 """So much of the outline is enough, the rest is ribbon or print; what lacks counts squared."""
 
-CHOSEN = 3.2
+CHOSEN = 1.6
 """For what has no known shape: such pictures are chosen by a person, mostly because the object is
 in them, and one of many colours is less sure in each of its pixels than those that were fitted."""
 
 TURN_FREE = 0.5
 """Rad from which a board's turn counts: it is shown from the front, and seen from about there."""
 
-RING_FREE = -1.0
-"""Nat: what is around counts when it is hardly less like the object than like anything else."""
+RING_FREE, RING_MAX = -1.0, 1.0
+"""Nat: what is around counts when it is hardly less like the object than like anything else, and no
+more than this: an object may stand before a wall of nearly its colour."""
 
-PALE_FROM = 5.0
+HUE_FREE, TONE_FREE, WASHED_FREE = 0.5, 0.5, 1.0
+"""Tolerances that nobody minds: blur and a ribbon wash a colour out, little makes it more of it."""
+
+PALE_FROM, PALE_MAX = 5.0, 4.0
 """Nat: a core surer than that is of the object's very colour; what lacks counts squared, for other
-things near that colour stay below while blur leaves the object's own."""
+things near that colour stay below while blur leaves the object's own. No more than so many squared
+nat count: in half the light the object's own colour is hardly sure."""
 
 TOLERANCES_MAX = 6.0
 PIXELS_RANGE = (60.0, 2000.0)
@@ -66,7 +73,8 @@ PIXELS_MIDDLE = 100.0
 class CaseWeights(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Log-odds per unit of each measure; as `naod.finding.measure` has them.
 
-    `pixels` counts per factor e from PIXELS_MIDDLE.
+    `pixels` counts per factor e from PIXELS_MIDDLE. `tone`: more colour than the object's,
+    `washed`: less. `blind`: once where there is no picture to see hue and tone in.
     """
 
     constant: float = 0.0
@@ -78,6 +86,10 @@ class CaseWeights(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     aspect: float = 0.0
     turn: float = 0.0
     pale: float = 0.0
+    hue: float = 0.0
+    tone: float = 0.0
+    washed: float = 0.0
+    blind: float = 0.0
 
 
 CASES = ("whole", "cut", "unknown")
@@ -109,13 +121,17 @@ def terms(measures: Floats) -> Floats:
         pixels = min(max(row[PIXELS], PIXELS_RANGE[0]), PIXELS_RANGE[1])
         line[0] = 1.0
         line[1] = row[COLOUR]
-        line[2] = max(row[RING] - RING_FREE, 0.0)
+        line[2] = min(max(row[RING] - RING_FREE, 0.0), RING_MAX)
         line[3] = math.log(pixels / PIXELS_MIDDLE)
         line[4] = min(lack**2, TOLERANCES_MAX)
         line[5] = min(row[GAP], TOLERANCES_MAX)
         line[6] = min(max(row[ASPECT] - 0.5, 0.0), TOLERANCES_MAX)
         line[7] = max(row[TURN] - TURN_FREE, 0.0)
-        line[8] = max(PALE_FROM - row[CORE], 0.0) ** 2
+        line[8] = min(max(PALE_FROM - row[CORE], 0.0) ** 2, PALE_MAX)
+        line[9] = min(max(row[HUE] - HUE_FREE, 0.0), TOLERANCES_MAX)
+        line[10] = min(max(row[TONE] - TONE_FREE, 0.0), TOLERANCES_MAX)
+        line[11] = min(max(-row[TONE] - WASHED_FREE, 0.0), TOLERANCES_MAX)
+        line[12] = 1.0 if row[HUE] < 0.0 else 0.0
     return out
 
 

@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.blob import evidence
-from naod.perception.components import AREA, components, paint
+from naod.perception.components import AREA, BOTTOM, LEFT, RIGHT, TOP, components, paint
 from naod.perception.energy import STEPS
 from naod.perception.runs import EVIDENCE, Runs
 from naod.perception.segmenter import Segmentation
@@ -26,6 +26,7 @@ CORE_SHARE = 0.6
 """Of what a region's surest pixel says; what says less is not of its core."""
 
 PEAK_MAX = 6 * STEPS
+CORE, RIM = np.uint8(1), np.uint8(2)
 CORE_OF_PIXELS = 24
 """Smaller regions have no core worth looking at."""
 
@@ -57,8 +58,12 @@ def regions_of(segmentation: Segmentation) -> Regions:
 
 
 def cores_of(regions: Regions) -> Regions:
-    """Connected parts of regions at the stricter level; no pixel is in a core but not in them."""
-    mask = _core_mask(regions.labels, regions.table[:, AREA], regions.differences)
+    """Connected parts of regions at the stricter level; no pixel is in a core but not in them.
+
+    Blur leaves a rim that is less sure: where a core comes near the end of its region, it ends
+    there.
+    """
+    mask = _core_mask(regions.labels, regions.table, regions.differences)
     labels, table = components(mask)
     told = evidence(labels, regions.differences, len(table))
     return Regions(labels, table, told, regions.differences)
@@ -79,20 +84,56 @@ def _paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
 
 @njit(cache=True, nogil=True)
 def _core_mask(
-    labels: NDArray[np.int32], areas: NDArray[np.int64], differences: NDArray[np.int32]
+    labels: NDArray[np.int32], table: NDArray[np.int64], differences: NDArray[np.int32]
 ) -> NDArray[np.uint8]:
-    height, width = labels.shape
-    least = np.zeros(areas.size + 1, dtype=np.int32)
-    for i in range(height):
-        for j in range(width):
-            if labels[i, j]:
-                least[labels[i, j]] = min(least[labels[i, j]], differences[i, j])
-    for k in range(areas.size):
-        level = CORE_SHARE * min(-least[k + 1], PEAK_MAX)
-        least[k + 1] = -np.int32(level) if areas[k] >= CORE_OF_PIXELS else -(1 << 30)
-    mask = np.zeros((height, width), dtype=np.uint8)
-    for i in range(height):
-        for j in range(width):
-            if labels[i, j] and differences[i, j] < least[labels[i, j]]:
-                mask[i, j] = 1
+    mask = np.zeros(labels.shape, dtype=np.uint8)
+    for k in range(len(table)):
+        _mark_core(labels, table[k], np.int32(k + 1), differences, mask)
+        _mark_rim(labels, table[k], np.int32(k + 1), mask)
     return mask
+
+
+@njit(cache=True, nogil=True)
+def _mark_core(
+    labels: NDArray[np.int32],
+    region: NDArray[np.int64],
+    label: np.int32,
+    differences: NDArray[np.int32],
+    mask: NDArray[np.uint8],
+) -> None:
+    """Mark as CORE what is surer than the level; all of a small region."""
+    rows, columns = (region[TOP], region[BOTTOM] + 1), (region[LEFT], region[RIGHT] + 1)
+    level = 1 << 30
+    if region[AREA] >= CORE_OF_PIXELS:
+        surest = 0
+        for i in range(rows[0], rows[1]):
+            for j in range(columns[0], columns[1]):
+                if labels[i, j] == label:
+                    surest = max(surest, -differences[i, j])
+        level = -int(CORE_SHARE * min(surest, PEAK_MAX))
+    for i in range(rows[0], rows[1]):
+        for j in range(columns[0], columns[1]):
+            if labels[i, j] == label and differences[i, j] < level:
+                mask[i, j] = CORE
+
+
+@njit(cache=True, nogil=True)
+def _mark_rim(
+    labels: NDArray[np.int32],
+    region: NDArray[np.int64],
+    label: np.int32,
+    mask: NDArray[np.uint8],
+) -> None:
+    """Mark as RIM the pixels beside a core that are the last ones of their region."""
+    height, width = labels.shape
+    for i in range(region[TOP], region[BOTTOM] + 1):
+        for j in range(region[LEFT], region[RIGHT] + 1):
+            if labels[i, j] != label or mask[i, j]:
+                continue
+            beside = last = False
+            for y in range(max(i - 1, 0), min(i + 2, height)):
+                for x in range(max(j - 1, 0), min(j + 2, width)):
+                    beside |= mask[y, x] == CORE
+                    last |= labels[y, x] == 0
+            if beside and last:
+                mask[i, j] = RIM

@@ -16,12 +16,16 @@ from numpy.typing import NDArray
 from hal.backends import OpenOptions, open_studio
 from hal.scenario import CameraSection, Scenario, SceneSection, ThingSection
 from hal.simulation import Studio
+from hal.yuyv import yuv_from_yuyv
+from naod.finding.walls import paint_wall
 from naod.geometry.camera import PinholeCamera, nominal_camera
 from naod.geometry.transforms import Matrix
+from naod.perception.blurring import light_from_yuv, yuv_from_light
 from naod.perception.colour_model import Region
 from naod.pose.objects import ObjectShape, shape_of
 
 Thing = Literal["can", "ribbon", "board"]
+Colour = tuple[int, int, int]
 
 SIZE = (320, 240)
 NOISE_STD = 1.0
@@ -44,7 +48,11 @@ GLIMPSE_SHARE = 0.1
 CAN, BOARD = (0.033, 0.115), (0.30, 0.20)
 """Radius, or width, and height in m."""
 
-COLOURS = {"can": (200, 20, 30), "ribbon": (200, 20, 30), "board": (235, 200, 20)}
+COLOURS: dict[Thing, Colour] = {
+    "can": (200, 20, 30),
+    "ribbon": (200, 20, 30),
+    "board": (235, 200, 20),
+}
 OTHERS: tuple[tuple[str, float, float], ...] = (
     ("cylinder", 0.060, 0.06),
     ("cylinder", 0.014, 0.22),
@@ -55,9 +63,18 @@ OTHERS: tuple[tuple[str, float, float], ...] = (
 )
 """Kind, radius or width, height of things of the object's colour that are not the object."""
 
+RIBBON = "ribbon.png"
+NEAR_LEVELS = (50.0, 110.0)
+"""By how much other things that are nearly of its colour differ from it, in RGB."""
+
 
 class RoomSpec(msgspec.Struct, frozen=True):
-    """`others`: how many things of the object's colour stand about; `floor`: where it stands."""
+    """`others`: how many things of the object's colour stand about, `near`: of nearly its colour.
+
+    `floor`: where it stands. `walls`: those of a scenario, or "picture" for patches of many
+    colours. `tint`: logarithms by which red and blue light are more than in the room at home;
+    `contrast`: logarithm of the exponent by which the camera's curve differs from there.
+    """
 
     seed: int
     thing: Thing = "can"
@@ -65,6 +82,10 @@ class RoomSpec(msgspec.Struct, frozen=True):
     others: int = 0
     floor: bool = False
     light: float = 1.0
+    near: int = 0
+    walls: str = "clutter"
+    tint: tuple[float, float] = (0.0, 0.0)
+    contrast: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +106,7 @@ class Room:
     def __init__(self, spec: RoomSpec, folder: Path) -> None:
         self.spec = spec
         scenario = _scenario(spec, folder)
-        self.shape: ObjectShape = shape_of(_object(spec, False, folder))
+        self.shape: ObjectShape = shape_of(_object(spec, False))
         self.camera: PinholeCamera = nominal_camera("v6", *SIZE)
         section = {"scenario": scenario, "scenario_folder": folder, "seed": spec.seed}
         options = OpenOptions(width=SIZE[0], height=SIZE[1], section=section)
@@ -115,6 +136,7 @@ class Room:
     def _view(self, poses: NDArray[np.float64], noise_seed: int) -> View | None:
         """None where only a glimpse of the object is in the picture."""
         yuyv = self._studio.frame_at(poses[0], poses, noise_seed)
+        yuyv = developed(yuyv, self.spec.tint, self.spec.contrast)
         blur_px = self.camera.fx * _angle(poses[0, :3, :3].T @ poses[-1, :3, :3])
         if not self.spec.present:
             return View(yuyv, None, blur_px)
@@ -149,6 +171,22 @@ class Room:
         return np.stack([_step(T, turn) for turn in turns])
 
 
+def developed(
+    yuyv: NDArray[np.uint8], tint: tuple[float, float], contrast: float
+) -> NDArray[np.uint8]:
+    """A picture (H, W, 2) in light of another colour and by another curve; as in `RoomSpec`."""
+    if not any(tint) and not contrast:
+        return yuyv
+    light = light_from_yuv(yuv_from_yuyv(yuyv).astype(np.float32))
+    light *= np.exp(np.array([tint[0], 0.0, tint[1]], dtype=np.float32))
+    light = np.clip(light, 0.0, 1.0) ** np.float32(math.exp(contrast))
+    yuv = np.clip(np.rint(yuv_from_light(light)), 0, 255).astype(np.uint8)
+    out = np.empty_like(yuyv)
+    out[..., 0] = yuv[..., 0]
+    out[:, 0::2, 1], out[:, 1::2, 1] = yuv[:, 0::2, 1], yuv[:, 0::2, 2]
+    return out
+
+
 def _step(T: Matrix, turn: NDArray[np.float64]) -> Matrix:
     out = T.copy()
     out[:3, :3] = T[:3, :3] @ _turned(turn)
@@ -178,7 +216,7 @@ def _looking(T_object: Matrix, way_m: float, azimuth: float) -> Matrix:
     return T
 
 
-def _object(spec: RoomSpec, speck: bool, folder: Path) -> ThingSection:
+def _object(spec: RoomSpec, speck: bool) -> ThingSection:
     """A speck stands for an absent object: the table stays."""
     if spec.thing == "board":
         wide, high = (SPECK_M, SPECK_M) if speck else BOARD
@@ -186,36 +224,51 @@ def _object(spec: RoomSpec, speck: bool, folder: Path) -> ThingSection:
     radius, high = (SPECK_M, SPECK_M) if speck else CAN
     bottom = 0.0 if spec.floor else TABLE_TOP_M
     place = (1.2, 0.0, bottom + high / 2.0)
-    texture = _ribbon(folder) if spec.thing == "ribbon" and not speck else None
+    texture = RIBBON if spec.thing == "ribbon" and not speck else None
     return ThingSection(radius_m=radius, height_m=high, position=place, texture=texture)
 
 
 def _scenario(spec: RoomSpec, folder: Path) -> Scenario:
     rng = np.random.default_rng([spec.seed, 57])
-    centre = _object(spec, False, folder).position or (1.6, 0.0, 0.50)
-    others = []
-    for n in range(spec.others):
-        kind, across, height = OTHERS[int(rng.integers(len(OTHERS)))]
-        aside = (1.0 if n % 2 else -1.0) * (rng.uniform(0.01, 0.2) + 0.06 + across)
-        aside += math.copysign(0.15, aside) if spec.thing == "board" else 0.0
-        sizes = {"radius_m" if kind == "cylinder" else "width_m": across, "height_m": height}
-        low = centre[2] if spec.thing == "board" else (0.0 if spec.floor else TABLE_TOP_M)
-        z = low if spec.thing == "board" else low + height / 2.0 + 1e-3
-        place = (centre[0] - rng.uniform(0.0, 0.1), aside, z)
-        colour = COLOURS[spec.thing]
-        others.append(ThingSection(kind=kind, colour=colour, position=place, **sizes))  # type: ignore[arg-type]
-    scene = SceneSection(background="clutter", light=spec.light)
-    thing = _object(spec, not spec.present, folder)
+    own = COLOURS[spec.thing]
+    others = [_other(spec, rng, n, own) for n in range(spec.others)]
+    others += [_other(spec, rng, n, _near(own, rng)) for n in range(spec.near)]
+    _paint_ribbon(folder / RIBBON)
+    walls = spec.walls
+    if walls == "picture":
+        walls = "wall.png"
+        paint_wall(folder / walls, spec.seed)
+    scene = SceneSection(background=walls, light=spec.light)
+    thing = _object(spec, not spec.present)
     camera = CameraSection(noise_std=NOISE_STD)
     return Scenario(object=thing, scene=scene, camera=camera, distractor=tuple(others))
 
 
-def _ribbon(folder: Path) -> str:
+def _near(own: Colour, rng: np.random.Generator) -> Colour:
+    way = rng.normal(0.0, 1.0, 3)
+    levels = np.array(own) + way / np.linalg.norm(way) * rng.uniform(*NEAR_LEVELS)
+    red, green, blue = (int(level) for level in np.clip(np.rint(levels), 0, 255))
+    return red, green, blue
+
+
+def _other(spec: RoomSpec, rng: np.random.Generator, n: int, colour: Colour) -> ThingSection:
+    """Something beside where the object is, on its left and right in turn."""
+    centre = _object(spec, False).position or (1.6, 0.0, 0.50)
+    kind, across, height = OTHERS[int(rng.integers(len(OTHERS)))]
+    aside = (1.0 if n % 2 else -1.0) * (rng.uniform(0.01, 0.2) + 0.06 + across)
+    aside += math.copysign(0.15, aside) if spec.thing == "board" else 0.0
+    sizes = {"radius_m" if kind == "cylinder" else "width_m": across, "height_m": height}
+    low = centre[2] if spec.thing == "board" else (0.0 if spec.floor else TABLE_TOP_M)
+    z = low if spec.thing == "board" else low + height / 2.0 + 1e-3
+    place = (centre[0] - rng.uniform(0.0, 0.1), aside, z)
+    return ThingSection(kind=kind, colour=colour, position=place, **sizes)  # type: ignore[arg-type]
+
+
+def _paint_ribbon(path: Path) -> None:
     """A red wrapper with a white ribbon that runs around it in a wave."""
     image = np.full((128, 256, 3), COLOURS["ribbon"][::-1], dtype=np.uint8)
     x = np.arange(256)
     middle = 58.0 + 9.0 * np.sin(2.0 * np.pi * x / 128.0)
     rows = np.arange(128)[:, None]
     image[np.abs(rows - middle) < 9.0] = (238, 240, 240)
-    cv2.imwrite(str(folder / "ribbon.png"), image)
-    return "ribbon.png"
+    cv2.imwrite(str(path), image)

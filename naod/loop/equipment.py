@@ -11,6 +11,7 @@ from hal.nao.joints import JOINT_INDEX
 from hal.types import BodyState, CameraName, Frame, HeadAngles, PlanarMotion, RobotInfo
 from naod.config import CameraConfig, DaemonConfig
 from naod.finding.find import find_object
+from naod.finding.hue import Colours
 from naod.geometry.camera import PinholeCamera, nominal_camera
 from naod.geometry.transforms import Matrix, Vector
 from naod.localisation.base_frame import T_base_camera, is_lifted
@@ -114,7 +115,10 @@ class Equipment:
         segmentation = self._segmenter_for(model).segment(frame.yuyv)
         settings = self.config.segmentation
         expected_px = self._blur_px(frame, _point(AHEAD, None, prior), motion)
-        found = find_object(segmentation, self.shape, self.camera, prior, settings, expected_px)
+        colours = Colours(frame.yuyv, model)
+        found = find_object(
+            segmentation, self.shape, self.camera, prior, settings, expected_px, colours
+        )
         if found is None:
             return None
         blob = found.blob

@@ -56,6 +56,7 @@ class Segmenter:
         self, model: ColourModel, settings: SegmentationConfig, size: tuple[int, int]
     ) -> None:
         self.settings = settings
+        self.model = model
         self.reduction = Reduction(size, settings.width)
         self.singletons = Singletons(model, settings.background_energy, settings.light_std)
         self._lookup = Lookup(self.singletons, self.beta_steps)
@@ -79,6 +80,7 @@ class Segmenter:
         """Go on with another colour model; about a millisecond, and no memory."""
         settings = self.settings
         self._sights.look_up()
+        self.model = model
         self.singletons = Singletons(model, settings.background_energy, settings.light_std)
         self._lookup.rebuild(self.singletons, self.beta_steps)
 

@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from naod.geometry.camera import nominal_camera
+from naod.perception.colour_model import ColourModel
 from naod.perception.energy import STEPS
 from naod.perception.segmenter import Segmentation
 from naod.pose.contour import outline_px
@@ -12,6 +13,9 @@ from naod.pose.frames import facing, pose
 CAMERA = nominal_camera("v6", 640, 480)
 SMALL = CAMERA.resized(160, 120)
 SURE = 5 * STEPS
+
+RED = (65.0, 106.0, 206.0)
+MODEL = ColourModel(mean=RED, covariance=((9.0, 0.0, 0.0), (0.0, 9.0, 0.0), (0.0, 0.0, 9.0)))
 
 
 def standing(x, y, z):
@@ -36,3 +40,14 @@ def empty():
 def segmented(mask):
     differences = np.where(mask > 0, np.int32(-SURE), np.int32(SURE))
     return Segmentation(mask, 0.0, 1, 4.0, (640, 480), True, differences)
+
+
+def painted(mask, colour):
+    """A picture (480, 640, 2) of one colour where a mask (120, 160) has something, else grey."""
+    inside = np.kron(mask, np.ones((4, 4), np.uint8)) > 0
+    yuyv = np.full((480, 640, 2), 128, np.uint8)
+    y, u, v = np.rint(colour).astype(np.uint8)
+    yuyv[..., 0][inside] = y
+    yuyv[:, 0::2, 1][inside[:, 0::2]] = u
+    yuyv[:, 1::2, 1][inside[:, 1::2]] = v
+    return yuyv

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from drawn import CAMERA, SMALL, draw, empty, segmented, standing
+from drawn import CAMERA, MODEL, RED, SMALL, draw, empty, painted, segmented, standing
 
 from naod.config import SegmentationConfig
 from naod.finding.find import Expected, find_object, likeliest, scored_groups
 from naod.finding.groups import GROUPS_MAX
+from naod.finding.hue import Colours
 from naod.finding.presence import distance_m
 from naod.finding.regions import regions_of
 from naod.perception.blob import find_blob
@@ -18,7 +19,8 @@ CAN, BOARD = Cylinder(), Rectangle()
 
 
 def found(mask, shape=CAN, prior=None):
-    return find_object(segmented(mask), shape, CAMERA, prior, SETTINGS)
+    colours = Colours(painted(mask, RED), MODEL)
+    return find_object(segmented(mask), shape, CAMERA, prior, SETTINGS, colours=colours)
 
 
 def expected_at(T, age_s=0.1, sigma_m=0.02):
