@@ -12,7 +12,7 @@ from naod.config import SegmentationConfig
 from naod.finding.expectation import agreement
 from naod.finding.groups import groups_of
 from naod.finding.hue import CLIP, NO_OWN, NO_PICTURE, Colours
-from naod.finding.measure import COLOUR, CORE, NO_SHAPE, measure_groups
+from naod.finding.measure import COLOUR, CORE, NO_SHAPE, PIXELS, measure_groups
 from naod.finding.presence import colour_and_shape, plausibility, probability
 from naod.finding.regions import Regions, cores_of, regions_of
 from naod.geometry.camera import PinholeCamera
@@ -25,6 +25,9 @@ from naod.pose.prior import Prior
 
 SURE_ODDS = 1.5
 """Log-odds from which nobody looks further."""
+
+LIKELY_ODDS = 0.5
+"""Log-odds from which a region's size tells more than how purely it is of the object's colour."""
 
 CORE_ODDS = 0.5
 """By which a core must be likelier than any whole region to be taken for the object."""
@@ -142,9 +145,17 @@ class Scored:
         return out
 
     def best(self) -> tuple[int, float]:
-        """The likeliest group and its log-odds."""
+        """The likeliest group and its log-odds.
+
+        Without a shape, of those that are likely the one with most pixels: a large object has
+        shades in it that a small thing beside it has not.
+        """
         odds = colour_and_shape(self.measures, self.cuts, self.known) + self.offsets
-        best = int(np.argmax(odds))
+        told = odds
+        if not self.known:
+            likely = odds >= min(float(odds.max()), LIKELY_ODDS)
+            told = np.where(likely, self.measures[:, PIXELS], 0.0)
+        best = int(np.argmax(told))
         return best, float(odds[best])
 
 

@@ -1,5 +1,6 @@
 """The whole experiment in lock-step: shown once, started elsewhere, reached by sight."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -21,8 +22,13 @@ def run_demo(name, seed):
         lockstep.robot.close()
 
 
+@cache
+def outcome_of(name, seed):
+    return run_demo(name, seed)[0]
+
+
 def check(name, seed):
-    outcome, _ = run_demo(name, seed)
+    outcome = outcome_of(name, seed)
     summary = outcome.summary
     assert summary.converged
     assert summary.final_error.reached, summary.final_error
@@ -42,8 +48,8 @@ def test_the_shown_pose_is_reached(name):
 
 
 def test_the_same_seed_gives_the_same_approach():
-    first, _ = run_demo("can", 4)
-    second, _ = run_demo("can", 4)
+    first = outcome_of("can", 1)
+    second, _ = run_demo("can", 1)
     assert first.summary.localisation == second.summary.localisation
     assert first.summary.final_error == second.summary.final_error
 

@@ -1,5 +1,6 @@
 """Which regions are the object, among other things of its colour."""
 
+import msgspec
 import numpy as np
 import pytest
 from drawn import CAMERA, MODEL, RED, SMALL, draw, empty, painted, segmented, standing
@@ -130,6 +131,21 @@ def test_without_shape_colour_decides():
     best = find_object(segmented(mask), None, None, None, SETTINGS)
     assert best.probability > 0.5
     assert best.parts == 1
+
+
+def test_without_shape_a_large_thing_in_shades_is_taken_before_a_small_pure_one():
+    small, large = empty(), empty()
+    small[10:18, 140:148] = 1
+    large[60:110, 10:60] = 1
+    sure = segmented(small | large).differences
+    shaded = np.where(large > 0, sure * 3 // 4, sure).astype(np.int32)
+    segmentation = msgspec.structs.replace(segmented(small | large), given=shaded)
+    best = find_object(segmentation, None, None, None, SETTINGS)
+    assert best.blob.centre_px[0] < 320.0
+    faint = np.where(large > 0, sure // 6, sure).astype(np.int32)
+    segmentation = msgspec.structs.replace(segmentation, given=faint)
+    best = find_object(segmentation, None, None, None, SETTINGS)
+    assert best.blob.centre_px[0] > 320.0
 
 
 def test_clutter_is_looked_at_within_bounds():
