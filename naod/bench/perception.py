@@ -41,7 +41,7 @@ def run(progress: Progress, settings: WalkSettings | None = None, walks: int = W
         further = (
             ratios.run(rendered, progress),
             optima.run([*rendered, *real], progress),
-            poses.run(settings, progress),
+            poses.run(progress, settings, poses.FEW_WALKS),
             growth.run(settings, progress),
             photographs.run(real, progress),
         )

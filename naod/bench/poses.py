@@ -1,4 +1,4 @@
-"""Poses on rendered frames against the truth: distance, width, and whether the sigma is honest."""
+"""`naod bench poses`: against the truth on rendered frames, and whether the sigma is honest."""
 
 from __future__ import annotations
 
@@ -28,7 +28,9 @@ from naod.pose.result import Estimator, ObjectPose
 EXPOSURES_S = (0.0, 0.010, 0.020, 0.033)
 THINGS: tuple[Thing, ...] = ("can", "board")
 ESTIMATORS: tuple[Estimator, ...] = ("exact", "paper")
-WALKS = 2
+WALKS, FEW_WALKS = 25, 2
+"""500 frames a row tell an honest sigma from one that is not; fewer go with other benchmarks."""
+
 COLUMNS = (
     "object, estimator, exposure",
     "frames",
@@ -53,11 +55,18 @@ class Errors:
     normalised: list[float] = field(default_factory=list)
 
 
-def run(settings: WalkSettings, progress: Progress, walks: int = WALKS) -> Report:
-    """Both objects, both estimators, from far to near at every exposure."""
+def run(
+    progress: Progress,
+    settings: WalkSettings | None = None,
+    walks: int = WALKS,
+    things: tuple[Thing, ...] = THINGS,
+    exposures_s: tuple[float, ...] = EXPOSURES_S,
+) -> Report:
+    """Every estimator, from far to near at every exposure."""
+    settings = settings or WalkSettings()
     rows = []
-    for thing in THINGS:
-        for exposure in EXPOSURES_S:
+    for thing in things:
+        for exposure in exposures_s:
             progress(f"poses of the {thing} at {1e3 * exposure:.0f} ms")
             errors = {estimator: Errors() for estimator in ESTIMATORS}
             for seed in range(settings.seed, settings.seed + walks):

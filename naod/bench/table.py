@@ -17,6 +17,7 @@ BENCHES: dict[str, str] = {
     "perception": "naod.bench.perception",
     "approach": "naod.bench.approach",
     "rooms": "naod.bench.rooms",
+    "poses": "naod.bench.poses",
     "lola": "naod.bench.lola",
 }
 
