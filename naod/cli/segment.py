@@ -16,10 +16,11 @@ from naod.cli.segment_classes import segment_classes
 from naod.config import SegmentationConfig
 from naod.errors import InputError
 from naod.files import write_whole
-from naod.finding.find import likeliest
+from naod.finding.find import Candidate, likeliest
+from naod.finding.hue import Colours
 from naod.perception.colour_model import ColourModel, load_model
 from naod.perception.fullsize import full_mask
-from naod.perception.segmenter import Segmenter
+from naod.perception.segmenter import Segmentation, Segmenter
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -57,9 +58,17 @@ class Segmenters:
         size = picture.padded_size
         if size not in self._by_size:
             segmenter = Segmenter(self._model, self._settings, size)
-            likeliest(segmenter.segment(picture.yuyv), None, None, None, 1)
+            seen(segmenter, picture)
             self._by_size[size] = segmenter
         return self._by_size[size]
+
+
+def seen(segmenter: Segmenter, picture: Picture) -> tuple[Segmentation, Candidate | None]:
+    """Labels of a picture and what in it is likeliest the object, by its colours alone."""
+    segmentation = segmenter.segment(picture.yuyv)
+    colours = Colours(picture.yuyv, segmenter.model)
+    pixels_min = segmenter.settings.pixels_min
+    return segmentation, likeliest(segmentation, None, None, None, pixels_min, colours=colours)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -95,14 +104,12 @@ def _spare_inputs(files: list[Path], out: Path) -> None:
 
 def _segment(segmenter: Segmenter, picture: Picture) -> tuple[dict[str, object], NDArray[np.uint8]]:
     start = time.perf_counter()
-    segmentation = segmenter.segment(picture.yuyv)
-    settings = segmenter.settings
-    best = likeliest(segmentation, None, None, None, settings.pixels_min)
+    segmentation, best = seen(segmenter, picture)
     elapsed = time.perf_counter() - start
     labels = full_mask(segmenter, segmentation, picture.yuyv)[:, : picture.width]
     line: dict[str, object] = {
         "input": picture.source,
-        "found": best is not None and best.probability >= settings.presence_min,
+        "found": best is not None and best.probability >= segmenter.settings.presence_min,
         "pixels": int(np.count_nonzero(labels)),
         "energy": segmentation.energy,
         "iterations": segmentation.iterations,

@@ -3,7 +3,8 @@
 Rooms are rendered, some without the object, some with other things of its colour. Every group of
 regions in a picture is a sample: it is the object, or it is not. Two rounds: the second one counts
 most what the first would have chosen. The rooms of `UNSEEN` are only to tell how well it went.
-What counts where no shape is known is kept: it was fitted to rooms with fewer look-alikes.
+What counts where no shape is known is kept: rooms full of things of nearly the object's colour are
+not like the pictures that people choose.
 """
 
 from __future__ import annotations
@@ -76,7 +77,8 @@ DEFAULT_COUNT = 3.0
 
 AGAINST_IT = ("ring", "lack", "gap", "aspect", "turn", "pale", "hue", "tone", "washed")
 SIGNS = {"colour": 1} | dict.fromkeys(AGAINST_IT, -1)
-OF_RENDERED = ("lack", "hue", "tone", "washed", "blind")
+KNOWN = ("whole", "cut")
+"""Cases that are fitted: those of an object whose shape is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +133,7 @@ def specs(seeds: Sequence[int]) -> list[RoomSpec]:
 
 
 def samples_of(room: Room, views: Sequence[View], learnt: Learnt, first: int) -> Iterator[Sample]:
-    """Every group in every view, with the shape known and unknown; pictures count from `first`."""
+    """Every group in every view, with and without its hue and tone; pictures count from `first`."""
     for number, view in enumerate(views):
         for eye in learnt.eyes[room.spec.thing]:
             segmentation = eye.segmenter.segment(view.yuyv)
@@ -141,7 +143,7 @@ def samples_of(room: Room, views: Sequence[View], learnt: Learnt, first: int) ->
             colours = Colours(view.yuyv, eye.model)
             known = Expected(room.shape, room.camera, None, blur_px, colours)
             blind = Expected(room.shape, room.camera, None, blur_px)
-            for expected in (known, blind, Expected()):
+            for expected in (known, blind):
                 first += 1
                 for found in _scored(segmentation, expected, learnt.settings.pixels_min):
                     yield from _samples(found, truth, first, room.spec, eye.kind)
@@ -166,17 +168,17 @@ def _samples(
             shared = np.count_nonzero(own & truth)
             overlap = shared / np.count_nonzero(own | truth)
             within = shared / np.count_nonzero(own)
-        case = ("cut" if found.cuts[k] else "whole") if found.known else "unknown"
+        case = "cut" if found.cuts[k] else "whole"
         offset = float(found.offsets[k])
         kinds = (spec.others > 0, spec.thing == "ribbon", kind == DEFAULT_KIND)
         yield Sample(picture, case, rows[k], offset, overlap, within, *kinds)
 
 
 def fitted(samples: Sequence[Sample]) -> dict[str, Floats]:
-    """Weights (len(TERMS),) of each case."""
-    first = {case: _fit(samples, case, None) for case in CASES}
+    """Weights (len(TERMS),) of each case; those of `KNOWN` are fitted."""
+    first = {case: _fit(samples, case, None) for case in KNOWN}
     chosen = {id(sample) for sample in chosen_of(samples, first)}
-    return {case: _fit(samples, case, chosen) for case in CASES}
+    return fitted_weights() | {case: _fit(samples, case, chosen) for case in KNOWN}
 
 
 def chosen_of(samples: Sequence[Sample], weights: dict[str, Floats]) -> list[Sample]:
@@ -190,12 +192,8 @@ def chosen_of(samples: Sequence[Sample], weights: dict[str, Floats]) -> list[Sam
 
 
 def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Floats:
-    """Weights of a case; before anything was chosen, objects and the rest count alike.
-
-    Things of one colour cannot be told apart without a shape: those are left out there.
-    """
+    """Weights of a case; before anything was chosen, objects and the rest count alike."""
     kept = [s for s in samples if s.case == case and s.told is not None]
-    kept = [s for s in kept if case != "unknown" or not s.alike]
     told = np.array([float(bool(s.told)) for s in kept])
     if chosen is None:
         counts = np.where(told > 0.0, 0.5 / max(told.sum(), 1.0), 0.5 / max((1 - told).sum(), 1.0))
@@ -205,9 +203,6 @@ def _fit(samples: Sequence[Sample], case: str, chosen: set[int] | None) -> Float
     counts *= [_importance(s) for s in kept]
     signs = np.array([SIGNS.get(name, 0) for name in TERMS], dtype=np.float64)
     rows = np.array([s.row for s in kept])
-    if case == "unknown":
-        # the things rendered are convex and of one hue, what people look for need not be
-        rows[:, [TERMS.index(name) for name in OF_RENDERED]] = 0.0
     return fit_logistic(rows, told, counts, signs)
 
 
@@ -215,7 +210,7 @@ def _importance(sample: Sample) -> float:
     count = DEFAULT_COUNT if sample.default else 1.0
     if sample.alike and sample.case == "whole":
         return ALIKE * count
-    if sample.told or sample.case == "unknown":
+    if sample.told:
         return count
     return count * (CUT_ALIKE if sample.alike else MISTAKEN)
 
@@ -264,8 +259,6 @@ def main() -> None:
     argparse.ArgumentParser(description=__doc__).parse_args()
     with tempfile.TemporaryDirectory() as folder:
         weights = fitted(gathered(LEARN, VIEWS, Path(folder)))
-        # rooms full of things of nearly the object's colour are not like pictures people choose
-        weights["unknown"] = fitted_weights()["unknown"]
         unseen = gathered(UNSEEN, VIEWS, Path(folder))
     rounded = {case: np.round(weights[case], 3) for case in CASES}
     write_whole(WEIGHTS, HEADER + text_of(rounded))

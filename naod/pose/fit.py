@@ -26,7 +26,6 @@ LAST_ROW = np.array([[0.0, 0.0, 0.0, 1.0]])
 OUTLIER = 3.0
 """Robust standard deviations at which a point's weight has fallen to a quarter."""
 
-
 SCATTER_LEAST = 0.2
 """Of the points of an edge about its offset, of the offset's own spread: no surer than that."""
 
@@ -37,9 +36,8 @@ class Fit:
 
     residuals: (n,) pixels, positive outside the outline. jacobian: (n, 6) of them by translation
     (m) and rotation (rad) about the object's origin, camera axes. edges: (n,) which edge. weights:
-    (n,) in 0 to 1 after down-weighting outliers. groups: (n,) which
-    points are off together, spreads: (4,) px by how much they may be, offsets: (4,) px by how much
-    they seem to be.
+    (n,) in 0 to 1 after down-weighting outliers. groups: (n,) which points are off together,
+    spreads: (4,) px by how much they may be, offsets: (4,) px by how much they seem to be.
     """
 
     T_camera_object: NDArray[np.float64]

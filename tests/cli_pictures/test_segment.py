@@ -5,6 +5,13 @@ import numpy as np
 import pytest
 from scenes import BOX, mask, picture, refuse, run, run_json, write, write_text
 
+from hal.yuyv import yuyv_from_rgb
+from naod.config import SegmentationConfig
+from naod.finding.find import likeliest
+from naod.finding.hue import Colours
+from naod.perception.colour_model import load_model
+from naod.perception.segmenter import Segmenter
+
 
 @pytest.fixture
 def model(capfd, tmp_path):
@@ -42,6 +49,18 @@ def test_masks_and_lines(capfd, tmp_path, model):
     assert lines[2]["pixels"] == 0
     assert lines[2]["probability"] == 0.0
     assert (out / "c.png").exists()
+
+
+def test_the_probability_is_the_daemons(capfd, tmp_path, model):
+    image = picture(6, colour=(70, 185, 195))
+    (line,) = run_json(capfd, "segment", write(tmp_path / "a.png", image), "--model", model)
+    learnt, settings = load_model(model), SegmentationConfig()
+    yuyv = yuyv_from_rgb(image[..., ::-1])
+    segmentation = Segmenter(learnt, settings, (320, 240)).segment(yuyv)
+    here = (segmentation, None, None, None, settings.pixels_min)
+    seen = likeliest(*here, colours=Colours(yuyv, learnt)).probability
+    assert line["probability"] == pytest.approx(seen, abs=1e-4)
+    assert abs(likeliest(*here).probability - seen) > 1e-3
 
 
 def test_an_odd_size_and_a_grey_picture(capfd, tmp_path, model):

@@ -13,7 +13,7 @@ from naod.config import SegmentationConfig
 from naod.finding.find import find_object
 from naod.finding.hue import Colours
 from naod.geometry.camera import nominal_camera
-from naod.perception.colour_model import ColourModel, Region
+from naod.perception.colour_model import Region
 from naod.perception.learning import DEFAULT_KIND, ModelKind, learn_model
 from naod.perception.segmenter import Segmenter
 from naod.pose.objects import ObjectShape
@@ -32,18 +32,16 @@ class Ours:
         self._size, self._kind, self._shape = size, kind, shape
         self._settings = msgspec.structs.replace(SegmentationConfig(), optimiser=optimiser)
         self._camera = nominal_camera("v6", *size)
-        self._model: ColourModel | None = None
         self._segmenter: Segmenter | None = None
 
     def learn(self, yuyv: NDArray[np.uint8], region: Region) -> None:
         """The colours, from one picture."""
-        self._model = learn_model([yuyv], region, self._kind)
-        self._segmenter = Segmenter(self._model, self._settings, self._size)
+        model = learn_model([yuyv], region, self._kind)
+        self._segmenter = Segmenter(model, self._settings, self._size)
 
     def segment(self, yuyv: NDArray[np.uint8], motion_px: Motion = STILL) -> Seen:
         """Labels and the object's box."""
         assert self._segmenter is not None
-        assert self._model is not None
         segmentation = self._segmenter.segment(yuyv)
         found = find_object(
             segmentation,
@@ -52,7 +50,7 @@ class Ours:
             None,
             self._settings,
             math.hypot(*motion_px),
-            Colours(yuyv, self._model),
+            Colours(yuyv, self._segmenter.model),
         )
         corners = None if found is None else found.blob.corners_px
         return Seen(segmentation.mask, segmentation.scale, corners)
