@@ -28,6 +28,7 @@ CONNECT_S = 5.0
 CALL_S = 1.0
 
 _CUT = ("session closed", "not connected", "disconnected", "connection reset")
+_LOST = "the connection is lost: "
 
 
 def load_qi() -> Any:
@@ -174,14 +175,14 @@ def told_by(error: RuntimeError, name: str) -> HalError:
     if lower.startswith("arguments types did not match"):
         return ServiceMissingError(f"{name}: this robot takes other arguments")
     if any(words in lower for words in _CUT) or lower.startswith("connect error"):
-        return NotConnectedError(f"{name}: {text}")
+        return NotConnectedError(f"{name}: {_LOST}{text}")
     return CallRefusedError(f"{name}: {text}")
 
 
 def _unconnected(error: HalError, url: str, login: Login | None) -> HalError:
     if isinstance(error, NoAnswerError):
         return NotConnectedError(f"NAOqi at {url} does not answer")
-    text = str(error).removeprefix(f"connecting to {url}: ")
+    text = str(error).removeprefix(f"connecting to {url}: ").removeprefix(_LOST)
     # a login that fails shows as nothing but a connection that was closed
     if text == "disconnected" and _listens(url):
         who = "without a password" if login is None else f"as {login.user!r} with this password"

@@ -180,7 +180,7 @@ def test_server_killed_in_flight_then_back_with_services_fetched_again():
     assert session.call("Echo", "back", 1) == 1
     waiting = session.post("Echo", "wait", 30.0)
     server.kill()
-    with pytest.raises(NotConnectedError, match="Session closed"):
+    with pytest.raises(NotConnectedError, match="connection is lost: Session closed"):
         waiting.result(5.0)
     assert until(lambda: not session.connected)
     with pytest.raises(NotConnectedError):
