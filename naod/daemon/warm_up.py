@@ -13,7 +13,9 @@ from numpy.typing import NDArray
 from hal.errors import HalError
 from hal.protocols import Robot
 from hal.types import BodyState, Frame
-from naod.finding.regions import cores_of, regions_of
+from naod.finding.find import finer
+from naod.finding.hue import Colours
+from naod.finding.regions import regions_of
 from naod.geometry.camera import PinholeCamera
 from naod.loop.equipment import Equipment, Sighting
 from naod.perception.colour_model import Region
@@ -64,8 +66,9 @@ def rehearse(
     model = learn_model([yuyv, yuyv], region, kind)
     sighting = equipment.sight(model, frame, body)
     if sighting is not None:
-        # an easy picture needs neither, the first real one may need both
-        cores_of(regions_of(sighting.segmentation))
+        # an easy picture needs none of these, the first real one may need all
+        for _ in finer(regions_of(sighting.segmentation), Colours(yuyv, model)):
+            pass
         if sighting.pose is not None:
             pose = sighting.pose
             equipment.sight(model, frame, body, Prior(pose.T_camera_object, pose.covariance, 0.1))

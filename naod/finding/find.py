@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,8 @@ from naod.config import SegmentationConfig
 from naod.finding.expectation import agreement
 from naod.finding.groups import groups_of
 from naod.finding.hue import CLIP, NO_OWN, NO_PICTURE, Colours
-from naod.finding.measure import COLOUR, CORE, NO_SHAPE, PIXELS, measure_groups
+from naod.finding.measure import COLOUR, CORE, NO_SHAPE, PIXELS, RING, measure_groups
+from naod.finding.parts import parts_of
 from naod.finding.presence import colour_and_shape, plausibility, probability
 from naod.finding.regions import Regions, cores_of, regions_of
 from naod.geometry.camera import PinholeCamera
@@ -23,14 +25,15 @@ from naod.pose.contour import figures
 from naod.pose.objects import ObjectShape
 from naod.pose.prior import Prior
 
-SURE_ODDS = 1.5
-"""Log-odds from which nobody looks further."""
+SURE_ODDS, SURE_COLOUR = 1.5, 5.5
+"""Log-odds, and mean nat of colour, from which both nobody looks further: a region that is likely
+the object but not all of its colour may be the object and what stands behind it."""
 
 LIKELY_ODDS = 0.5
 """Log-odds from which a region's size tells more than how purely it is of the object's colour."""
 
-CORE_ODDS = 0.5
-"""By which a core must be likelier than any whole region to be taken for the object."""
+FINER_ODDS = 0.1
+"""By which a part of a region must be likelier than any whole one to be taken for the object."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +77,7 @@ def likeliest(
     counts for or against. blur_px: how far it moves through the full picture during the exposure, 0
     where nobody knows. colours: the picture itself, in which hue and tone are seen; without it,
     what is likeliest is less sure. Cost does not grow with clutter: only some regions are looked
-    at, and their cores only where no region is surely it.
+    at, and their parts only where no region is surely it and it alone.
     """
     regions = regions_of(segmentation)
     expected = Expected(shape, camera, prior, blur_px, colours)
@@ -82,19 +85,31 @@ def likeliest(
     if scored is None:
         return None
     best, odds = scored.best()
-    if odds < SURE_ODDS and scored.known:
-        cores = scored_groups(segmentation, cores_of(regions), expected, pixels_min)
-        if cores is not None and cores.best()[1] > odds + CORE_ODDS:
-            scored = cores
-            best, odds = scored.best()
+    if scored.known and not scored.surely(best, odds):
+        for apart in finer(regions, colours):
+            other = scored_groups(segmentation, apart, expected, pixels_min)
+            if other is None:
+                continue
+            likely, likely_odds = other.best()
+            if likely_odds > odds + FINER_ODDS:
+                scored, best, odds = other, likely, likely_odds
+            if other.surely(likely, likely_odds):
+                break
     wanted = scored.wanted(best)
-    parts = int(np.count_nonzero(wanted))
+    many = int(np.count_nonzero(wanted))
     blob = None
-    if parts == 1 and scored.regions is regions:
+    if many == 1 and scored.regions is regions:
         blob = _foremost(segmentation, scored, wanted, pixels_min)
     if blob is None:
         blob = blob_of(scored.regions.labels, scored.regions.table, wanted, segmentation.scale)
-    return Candidate(blob, probability(odds), parts)
+    return Candidate(blob, probability(odds), many)
+
+
+def finer(regions: Regions, colours: Colours | None) -> Iterator[Regions]:
+    """Parts of regions as they are tried in turn: cores, and what the picture's edges part."""
+    yield cores_of(regions)
+    if colours is not None:
+        yield parts_of(regions, colours.picture)
 
 
 def _foremost(
@@ -144,6 +159,10 @@ class Scored:
             out[1 + row] = bool(self.groups[group] >> n & 1)
         return out
 
+    def surely(self, group: int, odds: float) -> bool:
+        """Whether a group with such log-odds is the object and nothing else."""
+        return odds >= SURE_ODDS and bool(self.measures[group, COLOUR] >= SURE_COLOUR)
+
     def best(self) -> tuple[int, float]:
         """The likeliest group and its log-odds.
 
@@ -167,7 +186,9 @@ def scored_groups(
     known = shape is not None and camera is not None
     if not len(regions.table):
         return None
-    chosen, groups = groups_of(regions.table, regions.told, pixels_min, known)
+    chosen, groups = groups_of(
+        regions.table, regions.told, pixels_min, known, regions.colours
+    )
     if not len(groups):
         return None
     sizes = _figures(shape if known else None)
@@ -187,6 +208,7 @@ def scored_groups(
         # a model that is never quite sure says no less of what it is as sure of as it can be
         surer = CLIP / colours.peak
         measures[:, [COLOUR, CORE]] = np.minimum(measures[:, [COLOUR, CORE]] * surer, CLIP)
+    measures[:, RING] = np.minimum(measures[:, RING], regions.around_max)
     offsets = np.zeros(len(groups))
     if shape is not None and camera is not None:
         offsets += plausibility(measures, math.sqrt(camera.fx * camera.fy) / grain)

@@ -22,6 +22,11 @@ REACH = 0.45
 FILL_MIN = 0.3
 """Less than this share of the box around a group is no wrapper with a ribbon."""
 
+ALIKE_LEVELS = 16.0
+"""8-bit levels of Y, U and V together by which parts of one thing may differ."""
+
+NO_COLOURS: NDArray[np.float64] = np.zeros((0, 3))
+
 
 @njit(cache=True, nogil=True)
 def _near(table: NDArray[np.int64], a: int, b: int) -> bool:
@@ -71,21 +76,45 @@ def _bits(members: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _joins(table: NDArray[np.int64], chosen: NDArray[np.int64], members: int, n: int) -> bool:
+def _alike(colours: NDArray[np.float64], a: int, b: int) -> bool:
+    if not len(colours):
+        return True
+    gap2 = 0.0
+    for c in range(3):
+        gap2 += (colours[a, c] - colours[b, c]) ** 2
+    return gap2 < ALIKE_LEVELS**2
+
+
+@njit(cache=True, nogil=True)
+def _joins(
+    table: NDArray[np.int64],
+    colours: NDArray[np.float64],
+    chosen: NDArray[np.int64],
+    members: int,
+    n: int,
+) -> bool:
     joined = False
     for m in range(len(chosen)):
-        joined |= bool(members >> m & 1) and _near(table, chosen[m], chosen[n])
+        if members >> m & 1:
+            if not _alike(colours, chosen[m], chosen[n]):
+                return False
+            joined |= _near(table, chosen[m], chosen[n])
     return joined
 
 
 @njit(cache=True, nogil=True)
 def groups_of(
-    table: NDArray[np.int64], evidence: NDArray[np.float64], pixels_min: int, together: bool
+    table: NDArray[np.int64],
+    evidence: NDArray[np.float64],
+    pixels_min: int,
+    together: bool,
+    colours: NDArray[np.float64],
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Rows of `table` that are looked at (n,), and groups of them as bits (m,), at most GROUPS_MAX.
 
     evidence: (n,) of each region, for the object. A group has at least `pixels_min` pixels in its
-    largest part. Without `together` they are single regions.
+    largest part. Without `together` they are single regions. colours: (n, 3) mean Y, U and V, which
+    may not differ much in a group, or NO_COLOURS.
     """
     chosen = _most_evident(table, evidence, min(SPECK_PIXELS, pixels_min))
     groups = np.empty(GROUPS_MAX, dtype=np.int64)
@@ -104,7 +133,7 @@ def groups_of(
             wider = members | 1 << n
             if count == GROUPS_MAX or wider == members or wider in groups[:count]:
                 continue
-            if _joins(table, chosen, members, n) and _dense(table, chosen, wider):
+            if _joins(table, colours, chosen, members, n) and _dense(table, chosen, wider):
                 groups[count] = wider
                 count += 1
     return chosen, groups[:count].copy()

@@ -6,12 +6,14 @@ pixels are the surer ones, so a stricter level tells them apart.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.finding.groups import NO_COLOURS
 from naod.perception.blob import evidence
 from naod.perception.components import AREA, BOTTOM, LEFT, RIGHT, TOP, components, paint
 from naod.perception.energy import STEPS
@@ -37,12 +39,16 @@ class Regions:
 
     Columns as `components` has them. `told` (n,) float64: steps by which the pixels of each are
     likelier object. `differences` (h, w) int32: of each pixel, object's less background's.
+    `colours` (n, 3): mean Y, U and V where that must be alike in what belongs together, else
+    NO_COLOURS. `around_max`: nat that their surroundings count at most.
     """
 
     labels: NDArray[np.int32]
     table: NDArray[np.int64]
     told: NDArray[np.float64]
     differences: NDArray[np.int32]
+    colours: NDArray[np.float64] = field(default_factory=lambda: NO_COLOURS)
+    around_max: float = math.inf
 
 
 def regions_of(segmentation: Segmentation) -> Regions:
