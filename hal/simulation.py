@@ -75,6 +75,20 @@ class Studio(Protocol):
         """YUYV (height, width, 2) uint8, with the scenario's sensor noise if seeded."""
         ...
 
+    def frame_before(
+        self,
+        backdrop: NDArray[np.float32],
+        T_world_camera: NDArray[np.float64],
+        exposure_poses: NDArray[np.float64] | None = None,
+        noise_seed: int | None = None,
+    ) -> NDArray[np.uint8]:
+        """As `frame_at`, the object alone before a picture in place of its room.
+
+        backdrop: (height, width, 3) float32 linear light, 1 is full. Raises ValueError for another
+        size.
+        """
+        ...
+
     def mask_at(
         self,
         T_world_camera: NDArray[np.float64],

@@ -41,7 +41,9 @@ class Studio:
         """Raises ScenarioError."""
         self.scenario = resolved(scenario)
         self.T_world_object = object_frame(self.scenario.object)
-        self._scene = build_scene(furnished(self.scenario, folder or Path.cwd(), seed), False)
+        furniture = furnished(self.scenario, folder or Path.cwd(), seed)
+        self._scene = build_scene(furniture, False)
+        self._alone = build_scene([item for item in furniture if item.role == "object"], False)
         self._lens = nominal_pinhole(version, width, height)
         light = self.scenario.scene
         self._brightness = brightness_at(light.light, light.light_drift, 0.0)
@@ -75,6 +77,23 @@ class Studio:
         With a `noise_seed` it carries the scenario's sensor noise.
         """
         linear = self.light_at(T_world_camera, exposure_poses)
+        std = 0.0 if noise_seed is None else self.scenario.camera.noise_std
+        return developed(linear, std, stream(noise_seed or 0, Purpose.PIXELS))
+
+    def frame_before(
+        self,
+        backdrop: NDArray[np.float32],
+        T_world_camera: Matrix,
+        exposure_poses: NDArray[np.float64] | None = None,
+        noise_seed: int | None = None,
+    ) -> NDArray[np.uint8]:
+        """As `frame_at`, the object alone before a picture: `backdrop` as `light_at` gives one."""
+        shot = self._shot(T_world_camera, exposure_poses)
+        if backdrop.shape != (shot.lens.height, shot.lens.width, 3):
+            raise ValueError(f"expected a backdrop of the picture's size, got {backdrop.shape}")
+        covered = (object_hits(self._alone, shot) / np.float32(SAMPLES))[..., None]
+        linear = picture(self._alone, shot, own_view=True, thorough=True)
+        linear += (1.0 - covered) * backdrop
         std = 0.0 if noise_seed is None else self.scenario.camera.noise_std
         return developed(linear, std, stream(noise_seed or 0, Purpose.PIXELS))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from hal.backends import OpenOptions, open_studio
 from hal.simulation import Studio
 from naod.bench.eye import APPROACH, PERIOD_S, eye
+from naod.bench.motion import smeared
 from naod.bench.room import Room, Thing, object_of, scenario_of
 from naod.geometry.camera import nominal_camera
 from naod.perception.colour_model import Region
@@ -26,6 +28,10 @@ SEEN_MIN_SHARE = 0.0005
 """Of the picture: less of the object than that does not count as being there."""
 
 APPROACH_FRAMES = 20
+
+
+Backdrop = Callable[[int], NDArray[np.float32]]
+"""From a frame's number to a picture of linear light, (H, W, 3)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,29 +84,53 @@ class Walk:
 
     def taken(self, name: str, exposure_s: float) -> Sequence:
         """The whole of it. Raises BackendError where no simulation is installed."""
-        before = eye(self._studio.T_world_object, self._far_m, 0.0)
-        shown = self._studio.frame_at(before, noise_seed=self._noise(0))
-        region = marked_region(self._studio.mask_at(before))
-        frames = tuple(self._frame(n, exposure_s) for n in range(1, self.settings.count + 1))
-        return Sequence(name, shown, region, frames, object_of(self.settings.thing))
+        shown, region = self.shown()
+        frames = []
+        for n in range(1, self.settings.count + 1):
+            poses = self._poses(n, exposure_s)
+            yuyv = self._studio.frame_at(poses[0], poses, self._noise(n))
+            frames.append(self._frame(yuyv, poses))
+        return Sequence(name, shown, region, tuple(frames), object_of(self.settings.thing))
 
     def without(self, name: str, exposure_s: float) -> Sequence:
         """The same walk after the object was taken away."""
-        seen = Walk(msgspec.structs.replace(self.settings, count=0)).taken(name, 0.0)
+        shown, region = self.shown()
         empty = _studio(self.settings, absent=True)
         frames = []
         for n in range(1, self.settings.count + 1):
             poses = self._poses(n, exposure_s)
             yuyv = empty.frame_at(poses[0], poses, self._noise(n))
             frames.append(Frame(yuyv, None, None, self._motion(poses)))
-        return Sequence(name, seen.shown, seen.region, tuple(frames), seen.shape)
+        return Sequence(name, shown, region, tuple(frames), object_of(self.settings.thing))
 
-    def _frame(self, n: int, exposure_s: float) -> Frame:
-        poses = self._poses(n, exposure_s)
+    def before(
+        self, exposure_s: float, backdrop: Backdrop, absent: bool = False
+    ) -> tuple[Frame, ...]:
+        """The object of the walk without its room, before pictures that move as it does.
+
+        absent: the pictures alone. Raises ValueError for pictures of another size.
+        """
+        studio = _studio(self.settings, absent=True) if absent else self._studio
+        frames = []
+        for n in range(1, self.settings.count + 1):
+            poses = self._poses(n, exposure_s)
+            motion_px = self._motion(poses)
+            light = smeared(backdrop(n), motion_px)
+            yuyv = studio.frame_before(light, poses[0], poses, self._noise(n))
+            empty = Frame(yuyv, None, None, motion_px)
+            frames.append(empty if absent else self._frame(yuyv, poses))
+        return tuple(frames)
+
+    def shown(self) -> tuple[NDArray[np.uint8], Region]:
+        """What a person is shown before it, and marks the object in."""
+        before = eye(self._studio.T_world_object, self._far_m, 0.0)
+        yuyv = self._studio.frame_at(before, noise_seed=self._noise(0))
+        return yuyv, marked_region(self._studio.mask_at(before))
+
+    def _frame(self, yuyv: NDArray[np.uint8], poses: NDArray[np.float64]) -> Frame:
         mask = self._studio.mask_at(poses[0], poses)
         T_world_camera = poses[MOMENTS // 2]
         T = np.linalg.inv(T_world_camera) @ self._studio.T_world_object
-        yuyv = self._studio.frame_at(poses[0], poses, self._noise(n))
         seen = np.count_nonzero(mask) >= SEEN_MIN_SHARE * mask.size
         return Frame(yuyv, mask if seen else None, T, self._motion(poses))
 

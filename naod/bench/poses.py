@@ -90,7 +90,7 @@ def measure(sequence: Sequence, errors: dict[Estimator, Errors]) -> None:
     segmenter = Segmenter(model, SegmentationConfig(), (width, height))
     for frame in sequence.frames:
         T = frame.T_camera_object
-        if frame.mask is None or T is None or not _whole(shape, T, camera):
+        if frame.mask is None or T is None or not whole(shape, T, camera):
             continue
         segmentation = segmenter.segment(frame.yuyv)
         colours = Colours(frame.yuyv, model)
@@ -101,18 +101,20 @@ def measure(sequence: Sequence, errors: dict[Estimator, Errors]) -> None:
                 continue
             pose = locate(frame.yuyv, found.blob, shape, camera, estimator)
             if pose is not None:
-                _add(kept, pose, frame, shape, camera)
+                add(kept, pose, frame, shape, camera)
 
 
-def _whole(shape: ObjectShape, T: NDArray[np.float64], camera: PinholeCamera) -> bool:
+def whole(shape: ObjectShape, T: NDArray[np.float64], camera: PinholeCamera) -> bool:
+    """Whether all of the object at T (4, 4) is in the picture."""
     corners = corners_px(shape, T, camera)
     inside = (corners > 1.0) & (corners < (camera.width - 2.0, camera.height - 2.0))
     return bool(inside.all())
 
 
-def _add(
+def add(
     kept: Errors, pose: ObjectPose, frame: Frame, shape: ObjectShape, camera: PinholeCamera
 ) -> None:
+    """Keep the errors of a pose found in a frame whose truth is known."""
     T = frame.T_camera_object
     assert T is not None
     error = pose.T_camera_object[:3, 3] - T[:3, 3]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.yuyv import yuyv_from_rgb
+from hal.yuyv import yuv_from_rgb, yuyv_from_rgb
 from naod.bench.frames import Frame, Sequence, marked_region
 from naod.perception.colour_model import Region
 
@@ -19,6 +20,12 @@ DEFAULT_FOLDER = "../shared/data"
 
 WALK_REGION = Region(60, 320, 160, 360)
 """The yellow chair's back in the first picture of the walk."""
+
+
+SUFFIXES = (".jpg", ".jpeg", ".png")
+LEAST_SIZE = (320, 240)
+COLOURS_MIN = 100
+"""Of sixteen levels each of red, green and blue: a grey picture has sixteen."""
 
 
 def photographs() -> Path:
@@ -34,6 +41,41 @@ def robots_walk() -> Sequence | None:
     if not frames:
         return None
     return Sequence("NAO's walk", frames[0].yuyv, WALK_REGION, tuple(frames))
+
+
+def coloured_photographs() -> dict[str, NDArray[np.uint8]]:
+    """(H, W, 3) uint8 YUV by name: the first picture of each folder, and scikit-learn's two.
+
+    Masks and grey pictures have too few colours, small ones are no photographs.
+    """
+    found: dict[str, NDArray[np.uint8]] = {}
+    for path in sorted(photographs().rglob("*")):
+        folder = str(path.parent.relative_to(photographs()))
+        if path.suffix in SUFFIXES and folder not in found:
+            bgr = cv2.imread(str(path))
+            if bgr is not None and _is_photograph(np.asarray(bgr)):
+                found[folder] = _yuv(_rgb(np.asarray(bgr)))
+    if importlib.util.find_spec("sklearn") is not None:
+        from sklearn.datasets import load_sample_images
+
+        samples = load_sample_images()
+        found |= {
+            Path(name).stem: _yuv(np.asarray(rgb))
+            for name, rgb in zip(samples.filenames, samples.images, strict=True)
+        }
+    return found
+
+
+def _is_photograph(bgr: NDArray[np.generic]) -> bool:
+    if bgr.shape[0] < LEAST_SIZE[1] or bgr.shape[1] < LEAST_SIZE[0]:
+        return False
+    coarse = (bgr[::2, ::2].astype(np.int32) // 16).reshape(-1, 3) @ (256, 16, 1)
+    return bool(np.count_nonzero(np.bincount(coarse) > 2) > COLOURS_MIN)
+
+
+def _yuv(rgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    levels = np.rint(yuv_from_rgb(rgb.astype(np.float32)))
+    return np.clip(levels, 0.0, 255.0).astype(np.uint8)
 
 
 def real_sequences() -> list[Sequence]:

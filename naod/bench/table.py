@@ -18,6 +18,7 @@ BENCHES: dict[str, str] = {
     "approach": "naod.bench.approach",
     "rooms": "naod.bench.rooms",
     "poses": "naod.bench.poses",
+    "backdrops": "naod.bench.backdrops",
     "lola": "naod.bench.lola",
 }
 

@@ -11,9 +11,9 @@ import pytest
 from naod.bench import perception
 from naod.bench.contest import MEMCPY
 from naod.bench.frames import Walk, WalkSettings
+from naod.bench.motion import motion_kernel
 from naod.bench.peers import richardson_lucy, wiener
 from naod.bench.peers.peer import CONTESTANTS, make_peer
-from naod.bench.peers.restored import motion_kernel
 from naod.bench.real import DEFAULT_FOLDER, FOLDER_VARIABLE, real_sequences
 from naod.bench.room import Room
 from naod.bench.score import main_region, mask_iou, polygon_iou

@@ -112,6 +112,30 @@ def pybullet_mask(studio: Studio, T_world_camera: Matrix) -> np.ndarray:
     return np.reshape(picture[4], (480, 640)) >= 0
 
 
+@pytest.mark.parametrize("scenario", [CAN, BOARD], ids=["can", "board"])
+def test_before_its_own_room_an_object_is_as_in_it(scenario: Scenario) -> None:
+    speck = {"radius_m": 1e-4, "height_m": 1e-4} if scenario is CAN else {"width_m": 1e-4}
+    if scenario is BOARD:
+        speck["height_m"] = 1e-4
+    thing = msgspec.structs.replace(scenario.object, **speck)
+    studio, empty = Studio(scenario), Studio(msgspec.structs.replace(scenario, object=thing))
+    T = view(studio, (0.70, -0.12, 0.60), 0.1)
+    poses = np.stack([T @ transform(rot_y(0.01 * n), (0.0, 0.0, 0.0)) for n in range(3)])
+    whole = studio.frame_at(T, poses).astype(int)
+    before = studio.frame_before(empty.light_at(T, poses), T, poses).astype(int)
+    off = np.abs(whole - before).max(axis=-1)
+    # a panel behind a board is seen by the speck's room alone
+    near = cv2.dilate(studio.mask_at(T, poses), np.ones((9, 9), np.uint8)) > 0
+    assert off[near].mean() < 0.2
+    assert np.quantile(off[near], 0.99) <= 2
+
+
+def test_a_backdrop_of_another_size_is_refused() -> None:
+    studio = Studio(CAN)
+    with pytest.raises(ValueError, match="size"):
+        studio.frame_before(np.zeros((10, 10, 3), np.float32), studio.T_world_object)
+
+
 def test_what_stands_before_the_object_hides_it() -> None:
     studio = Studio(CAN)
     T = view(studio, (0.60, 0.0, 0.4575), 0.0)

@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from naod.bench.motion import motion_kernel
 from naod.bench.peers.ours import Ours
 from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.bench.peers.reduced import Reduced
@@ -48,18 +49,6 @@ class Restored:
         if corners is not None:
             corners = (corners + 0.5) * grain - 0.5
         return Seen(seen.mask, grain * seen.grain_px, corners)
-
-
-def motion_kernel(dx: float, dy: float) -> NDArray[np.float32]:
-    """A straight, even motion's, odd square, sum 1, centred on its middle."""
-    half = math.ceil(max(abs(dx), abs(dy)) / 2.0) + 1
-    kernel = np.zeros((2 * half + 1, 2 * half + 1), dtype=np.float32)
-    for along in (np.arange(64) + 0.5) / 64.0 - 0.5:
-        x, y = half + along * dx, half + along * dy
-        j, i = int(x), int(y)
-        down, right = np.array([1.0 - (y - i), y - i]), np.array([1.0 - (x - j), x - j])
-        kernel[i : i + 2, j : j + 2] += np.outer(down, right)
-    return kernel / kernel.sum()
 
 
 def _encoded(picture: NDArray[np.float32]) -> NDArray[np.uint8]:
