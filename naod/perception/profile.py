@@ -29,6 +29,10 @@ MIXTURE = 0.2
 """How far from a straight line mixtures of two colours may lie, of its length: levels are a curve
 of light."""
 
+BEND = 0.25
+"""Further aside lies no mixture, but a third thing between the two: blur may leave nothing of it
+that is one colour."""
+
 STILL_RISING = 1.04
 """A step goes on while the distance from the inner colour grows by such a factor."""
 
@@ -121,6 +125,29 @@ def is_between(
 
 
 @njit(cache=True, nogil=True)
+def _bend(colours: NDArray[np.float64], first: int, last: int, inner: NDArray[np.float64]) -> int:
+    """Which sample lies so far off the way from the inner colour to the last that it is no mixture.
+
+    -1 if none does.
+    """
+    span2, most2, at = 0.0, (LIKE * NOISE_LEVELS) ** 2, -1
+    for c in range(3):
+        span2 += (colours[last, c] - inner[c]) ** 2
+    if span2 < 1.0:
+        return -1
+    most2 = max(most2, BEND**2 * span2)
+    for k in range(first, last):
+        along = gap2 = 0.0
+        for c in range(3):
+            along += (colours[k, c] - inner[c]) * (colours[last, c] - inner[c])
+            gap2 += (colours[k, c] - inner[c]) ** 2
+        aside2 = gap2 - along * along / span2
+        if aside2 > most2:
+            most2, at = aside2, k
+    return at
+
+
+@njit(cache=True, nogil=True)
 def outer_side(
     colours: NDArray[np.float64], count: int, few: int, inner: NDArray[np.float64]
 ) -> int:
@@ -140,6 +167,10 @@ def outer_side(
     for k in range(first + 1, count - few + 1):
         distance2 = _distance2(colours[k], inner, SHADING)
         if distance2 > STILL_RISING**2 * top:
+            # chroma is shared by pairs and follows brightness late: near the step itself any bends
+            bend = _bend(colours, first + few // 2 + 1, k, inner)
+            if bend >= 0:
+                return bend
             top, at = distance2, k
         elif k - at > 1:
             break
