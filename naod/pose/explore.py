@@ -24,6 +24,12 @@ HOPELESS, HOPELESS_GRAINS2 = 4.0, 0.1
 """A guess that comes out so many times as bad as another, and a bit, is not followed."""
 
 DEPTH_LEAST_M = 0.05
+TILT_STD_RAD = 0.45
+"""A can is seen level or from a little above, rarely from far above: where blur has rounded the
+corners, its rims seem to bulge as they do from there."""
+
+INDEPENDENT = 12.0
+"""So many of the points of an outline err independently."""
 
 
 @njit(cache=True, nogil=True)
@@ -70,6 +76,19 @@ def stand_up(kind: int, T: NDArray[np.float64]) -> bool:
 
 
 @njit(cache=True, nogil=True)
+def unlikeliness(kind: int, T: NDArray[np.float64]) -> float:
+    """Squared standard deviations of a can's tilt at T (3, 4) from being seen level."""
+    if kind != CYLINDER:
+        return 0.0
+    along = far2 = 0.0
+    for k in range(3):
+        along += T[k, 1] * T[k, 3]
+        far2 += T[k, 3] ** 2
+    tilt = math.asin(min(abs(along) / max(math.sqrt(far2), 1e-12), 1.0))
+    return (tilt / TILT_STD_RAD) ** 2
+
+
+@njit(cache=True, nogil=True)
 def angle_between(A: NDArray[np.float64], B: NDArray[np.float64]) -> float:
     """Of the rotations of two poses (3, 4)."""
     trace = 0.0
@@ -105,7 +124,10 @@ def _descended(
     grain: float,
     steps: int,
 ) -> float:
-    """Moves T to where it fits; mean squared residual in grains, infinite if that is nowhere."""
+    """Moves T to where it fits; mean squared residual in grains, infinite if that is nowhere.
+
+    More for a pose that is less likely: residuals are as large as they are, so by a factor.
+    """
     n = points.shape[0]
     residuals, jacobian, edges = np.empty(n), np.empty((n, 6)), np.zeros(n, dtype=np.int64)
     weights = np.empty(n)
@@ -118,7 +140,7 @@ def _descended(
     total = 0.0
     for k in range(n):
         total += min(abs(residuals[k]) / grain, CUT_GRAINS) ** 2
-    return total / n
+    return total / n * math.exp(unlikeliness(kind, T) / INDEPENDENT)
 
 
 @njit(cache=True, nogil=True)

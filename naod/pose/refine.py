@@ -8,7 +8,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.pose.explore import READINGS, explore, residuals_of, stand_up
+from naod.pose.explore import (
+    INDEPENDENT,
+    READINGS,
+    explore,
+    residuals_of,
+    stand_up,
+    unlikeliness,
+)
 from naod.pose.fit import descend
 from naod.pose.guesses import OTHERS_MAX, other_readings
 from naod.pose.lens import focal, from_pixels
@@ -104,6 +111,7 @@ def find_readings(
         for i in range(seen):
             worth += min(abs(residuals[i]) / grain, MISSED)
         worth = (worth + MISSED * missed) / counted[LOOKED]
+        worth *= math.exp(0.5 * unlikeliness(kind, found[0]) / INDEPENDENT)
         if worth < best:
             best, made = worth, several
             poses[:several], tally[:] = found[:several], counted

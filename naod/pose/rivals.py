@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from naod.pose.around import seen_outline
 from naod.pose.contour import CYLINDER, RECTANGLE, VERTICES
-from naod.pose.explore import READINGS, angle_between
+from naod.pose.explore import INDEPENDENT, READINGS, angle_between, unlikeliness
 from naod.pose.guesses import put, tilted
 from naod.pose.refine import fit_edges
 
@@ -152,6 +152,7 @@ def settle(
         ):  # fmt: skip
             continue
         worse = misfit_gap(residuals, groups, offsets, new, groups, new_offsets, spreads, trust)
+        worse += n / INDEPENDENT * (unlikeliness(kind, rival) - unlikeliness(kind, poses[0]))
         distinct = angle_between(rival, poses[0]) > DISTINCT_RAD
         if worse < 0.0:
             if distinct:
