@@ -186,9 +186,7 @@ def scored_groups(
     known = shape is not None and camera is not None
     if not len(regions.table):
         return None
-    chosen, groups = groups_of(
-        regions.table, regions.told, pixels_min, known, regions.colours
-    )
+    chosen, groups = groups_of(regions.table, regions.told, pixels_min, known, regions.colours)
     if not len(groups):
         return None
     sizes = _figures(shape if known else None)
