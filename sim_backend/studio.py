@@ -77,8 +77,7 @@ class Studio:
         With a `noise_seed` it carries the scenario's sensor noise.
         """
         linear = self.light_at(T_world_camera, exposure_poses)
-        std = 0.0 if noise_seed is None else self.scenario.camera.noise_std
-        return developed(linear, std, stream(noise_seed or 0, Purpose.PIXELS))
+        return self._developed(linear, noise_seed)
 
     def frame_before(
         self,
@@ -94,8 +93,7 @@ class Studio:
         covered = (object_hits(self._alone, shot) / np.float32(SAMPLES))[..., None]
         linear = picture(self._alone, shot, own_view=True, thorough=True)
         linear += (1.0 - covered) * backdrop
-        std = 0.0 if noise_seed is None else self.scenario.camera.noise_std
-        return developed(linear, std, stream(noise_seed or 0, Purpose.PIXELS))
+        return self._developed(linear, noise_seed)
 
     def coverage_at(
         self, T_world_camera: Matrix, exposure_poses: NDArray[np.float64] | None = None
@@ -109,6 +107,10 @@ class Studio:
         """255 where at least half of the pixel shows the object, else 0, (height, width) uint8."""
         covered = self.coverage_at(T_world_camera, exposure_poses) >= 0.5
         return np.where(covered, np.uint8(255), np.uint8(0))
+
+    def _developed(self, linear: NDArray[np.float32], noise_seed: int | None) -> NDArray[np.uint8]:
+        std = 0.0 if noise_seed is None else self.scenario.camera.noise_std
+        return developed(linear, std, stream(noise_seed or 0, Purpose.PIXELS))
 
     def _shot(self, T_world_camera: Matrix, poses: NDArray[np.float64] | None) -> Shot:
         moments = T_world_camera[None] if poses is None else _spread(np.asarray(poses))

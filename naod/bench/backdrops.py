@@ -29,7 +29,7 @@ from naod.finding.hue import Colours
 from naod.geometry.camera import nominal_camera
 from naod.perception.blob import blob_of_mask
 from naod.perception.blurring import light_from_yuv
-from naod.perception.colour_model import ColourModel, Region
+from naod.perception.colour_model import ColourModel
 from naod.perception.learning import learn_model
 from naod.perception.segmenter import Segmenter
 from naod.pose.locate import locate
@@ -87,7 +87,8 @@ def run(
     rows = []
     for thing in things:
         walk = Walk(msgspec.structs.replace(settings, thing=thing))
-        model = learn_model(*_taught(walk))
+        shown, region = walk.shown()
+        model = learn_model([shown], region)
         for exposure in EXPOSURES_S:
             tally = Tally()
             for name, yuv in photographs.items():
@@ -124,11 +125,6 @@ def _covering(yuv: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uin
     size = (math.ceil(scale * yuv.shape[1]), math.ceil(scale * yuv.shape[0]))
     how = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_CUBIC
     return np.asarray(cv2.resize(yuv, size, interpolation=how), dtype=np.uint8)
-
-
-def _taught(walk: Walk) -> tuple[list[NDArray[np.uint8]], Region]:
-    shown, region = walk.shown()
-    return [shown], region
 
 
 def measure(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import msgspec
@@ -31,7 +32,11 @@ APPROACH_FRAMES = 20
 
 
 Backdrop = Callable[[int], NDArray[np.float32]]
-"""From a frame's number to a picture of linear light, (H, W, 3)."""
+"""From a number, another for each frame, to a picture of linear light, (H, W, 3)."""
+
+Poses = NDArray[np.float64]
+Take = Callable[[Poses, Poses, int], NDArray[np.uint8]]
+"""From where the camera is, where it is during the exposure, and a number for the noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,24 +89,11 @@ class Walk:
 
     def taken(self, name: str, exposure_s: float) -> Sequence:
         """The whole of it. Raises BackendError where no simulation is installed."""
-        shown, region = self.shown()
-        frames = []
-        for n in range(1, self.settings.count + 1):
-            poses = self._poses(n, exposure_s)
-            yuyv = self._studio.frame_at(poses[0], poses, self._noise(n))
-            frames.append(self._frame(yuyv, poses))
-        return Sequence(name, shown, region, tuple(frames), object_of(self.settings.thing))
+        return self._sequence(name, self._frames(exposure_s, self._studio.frame_at))
 
     def without(self, name: str, exposure_s: float) -> Sequence:
         """The same walk after the object was taken away."""
-        shown, region = self.shown()
-        empty = _studio(self.settings, absent=True)
-        frames = []
-        for n in range(1, self.settings.count + 1):
-            poses = self._poses(n, exposure_s)
-            yuyv = empty.frame_at(poses[0], poses, self._noise(n))
-            frames.append(Frame(yuyv, None, None, self._motion(poses)))
-        return Sequence(name, shown, region, tuple(frames), object_of(self.settings.thing))
+        return self._sequence(name, self._frames(exposure_s, self._empty.frame_at, absent=True))
 
     def before(
         self, exposure_s: float, backdrop: Backdrop, absent: bool = False
@@ -110,14 +102,27 @@ class Walk:
 
         absent: the pictures alone. Raises ValueError for pictures of another size.
         """
-        studio = _studio(self.settings, absent=True) if absent else self._studio
+        studio = self._empty if absent else self._studio
+
+        def take(T: Poses, poses: Poses, noise: int) -> NDArray[np.uint8]:
+            light = smeared(backdrop(noise), self._motion(poses))
+            return studio.frame_before(light, T, poses, noise)
+
+        return self._frames(exposure_s, take, absent)
+
+    @cached_property
+    def _empty(self) -> Studio:
+        return _studio(self.settings, absent=True)
+
+    def _sequence(self, name: str, frames: tuple[Frame, ...]) -> Sequence:
+        return Sequence(name, *self.shown(), frames, object_of(self.settings.thing))
+
+    def _frames(self, exposure_s: float, take: Take, absent: bool = False) -> tuple[Frame, ...]:
         frames = []
         for n in range(1, self.settings.count + 1):
             poses = self._poses(n, exposure_s)
-            motion_px = self._motion(poses)
-            light = smeared(backdrop(n), motion_px)
-            yuyv = studio.frame_before(light, poses[0], poses, self._noise(n))
-            empty = Frame(yuyv, None, None, motion_px)
+            yuyv = take(poses[0], poses, self._noise(n))
+            empty = Frame(yuyv, None, None, self._motion(poses))
             frames.append(empty if absent else self._frame(yuyv, poses))
         return tuple(frames)
 

@@ -95,13 +95,19 @@ NO_OWN: Own = (0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True, nogil=True)
-def _add_block(
-    picture: NDArray[np.uint8], i: int, j: int, block: int, sums: NDArray[np.float64]
+def block_of(picture: NDArray[np.uint8], height: int) -> int:
+    """Side of the blocks of which `height` rows make up a picture; the last may be smaller."""
+    return -(-picture.shape[0] // height)
+
+
+@njit(cache=True, nogil=True)
+def add_block(
+    picture: NDArray[np.uint8], i: int, j: int, block: int, every: int, sums: NDArray[np.float64]
 ) -> None:
-    """Sums of Y, U, V, and how many, of the block behind a mask pixel; every other row will do."""
-    first = j * block // 2 * 2
-    for row in range(i * block, (i + 1) * block, 2):
-        for column in range(first, max((j + 1) * block, first + 1), 2):
+    """Add Y, U, V and how many of the block behind a mask pixel, of one row in `every`."""
+    first, rows, columns = j * block // 2 * 2, picture.shape[0], picture.shape[1]
+    for row in range(i * block, min((i + 1) * block, rows), every):
+        for column in range(first, min(max((j + 1) * block, first + 1), columns), 2):
             sums[0] += picture[row, column, 0]
             sums[1] += picture[row, column, 1]
             sums[2] += picture[row, column + 1, 1]
@@ -117,7 +123,7 @@ def _middle_colour(
     sums: NDArray[np.float64],
 ) -> None:
     height, width = labels.shape
-    block = picture.shape[0] // height
+    block = block_of(picture, height)
     for a in range(GRID):
         along = ((a + 0.5) / GRID - 0.5) * MIDDLE_SHARE * box[5]
         for b in range(GRID):
@@ -125,7 +131,8 @@ def _middle_colour(
             j = round(box[0] + along * box[2] + across * box[3])
             i = round(box[1] + along * box[3] - across * box[2])
             if 0 <= i < height and 0 <= j < width and wanted[labels[i, j]]:
-                _add_block(picture, i, j, block, sums)
+                # every other row will do
+                add_block(picture, i, j, block, 2, sums)
 
 
 @njit(cache=True, nogil=True)

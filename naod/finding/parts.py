@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.finding.hue import add_block, block_of
 from naod.finding.regions import Regions
 from naod.perception.blob import evidence
 from naod.perception.components import AREA, BOTTOM, LEFT, RIGHT, SUM_X, SUM_Y, TOP, components
@@ -45,23 +46,6 @@ def parts_of(regions: Regions, picture: NDArray[np.uint8]) -> Regions:
 
 
 @njit(cache=True, nogil=True)
-def _colour(
-    picture: NDArray[np.uint8], i: int, j: int, block: int, out: NDArray[np.float32]
-) -> None:
-    """Mean Y, U, V of the block behind a mask pixel."""
-    bottom, right = min((i + 1) * block, picture.shape[0]), min((j + 1) * block, picture.shape[1])
-    y = u = v = 0
-    for row in range(i * block, bottom):
-        for column in range(j * block, right):
-            first = column // 2 * 2
-            y += picture[row, column, 0]
-            u += picture[row, first, 1]
-            v += picture[row, first + 1, 1]
-    many = (bottom - i * block) * (right - j * block)
-    out[0], out[1], out[2] = y / many, u / many, v / many
-
-
-@njit(cache=True, nogil=True)
 def _step(a: NDArray[np.float32], b: NDArray[np.float32]) -> float:
     return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
@@ -72,13 +56,15 @@ def _even(
 ) -> NDArray[np.uint8]:
     """1 where a region's pixel is no edge to its neighbours in the region; fills their colours."""
     height, width = labels.shape
-    block = -(-picture.shape[0] // height)
+    block, sums = block_of(picture, height), np.empty(4)
     even = np.zeros((height, width), dtype=np.uint8)
     for i in range(height):
         for j in range(width):
             if labels[i, j] == 0:
                 continue
-            _colour(picture, i, j, block, colours[i, j])
+            sums[:] = 0.0
+            add_block(picture, i, j, block, 1, sums)
+            colours[i, j] = sums[:3] / sums[3]
             even[i, j] = 1
             if i and labels[i - 1, j] and _step(colours[i, j], colours[i - 1, j]) > EDGE_LEVELS:
                 even[i, j] = even[i - 1, j] = 0

@@ -56,6 +56,23 @@ def test_light_changes_neither(factor):
     assert abs(tone) < 0.3
 
 
+def test_a_picture_whose_rows_are_no_whole_blocks_is_looked_at_where_the_mask_says():
+    mask = block()[:107]
+    # 427 rows of blocks of four: the last block has three
+    tall = painted(block(), RED)[:427]
+    own = Colours(tall, MODEL)
+    seen = look_at_middle(own.picture, mask.astype(np.int32), WANTED, BOX, own.own)
+    assert seen == pytest.approx(looked(block(), RED), abs=1e-9)
+    low = np.zeros((107, 160), np.int32)
+    low[98:, 65:96] = 1
+    red = painted((np.pad(low, ((0, 13), (0, 0))) > 0).astype(np.uint8), RED)[:427]
+    box = np.array([80.0, 102.0, 0.0, 1.0, 20.0, 8.0])
+    found = Colours(red, MODEL)
+    hue, tone = look_at_middle(found.picture, low, WANTED, box, found.own)
+    assert hue < 0.3
+    assert abs(tone) < 0.3
+
+
 def test_only_what_is_wanted_counts():
     mask = block()
     assert looked(1 - mask, RED) == (0.0, 0.0)

@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from naod.bench.motion import motion_kernel
+from naod.bench.motion import LEAST_PX, motion_kernel
 from naod.bench.peers.ours import Ours
 from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.bench.peers.reduced import Reduced
@@ -21,9 +21,6 @@ from naod.perception.colour_model import Region
 
 Filter = Callable[[NDArray[np.float32], NDArray[np.float32]], NDArray[np.float32]]
 """From a picture (h, w, 3) and a kernel, odd square of sum 1, to the picture without it."""
-
-LEAST_PX = 0.5
-"""Motions shorter than that, in the small picture, are left alone."""
 
 
 class Restored:
