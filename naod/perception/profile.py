@@ -78,17 +78,19 @@ def profile(
 
 
 @njit(cache=True, nogil=True)
-def _distance2(
-    colour: NDArray[np.float64], reference: NDArray[np.float64], shading: float
-) -> float:
+def _giving(reference: NDArray[np.float64], shading: float) -> float:
+    """How much a colour's differences along its brightness are made up for, for `_distance2`."""
+    u, v = reference[1] - 128.0, reference[2] - 128.0
+    bright = reference[0] * reference[0] + u * u + v * v
+    return 1.0 / (NOISE_LEVELS**2 / shading**2 + bright)
+
+
+@njit(cache=True, nogil=True)
+def _distance2(colour: NDArray[np.float64], reference: NDArray[np.float64], giving: float) -> float:
     """Squared, in standard deviations of noise and of the reference's brightness."""
-    noise2, square, along, bright = NOISE_LEVELS**2, 0.0, 0.0, 0.0
-    for c in range(3):
-        gap, shade = colour[c] - reference[c], reference[c] - (128.0 if c else 0.0)
-        square += gap * gap
-        along += gap * shade
-        bright += shade * shade
-    return (square - along * along / (noise2 / shading**2 + bright)) / noise2
+    y, u, v = colour[0] - reference[0], colour[1] - reference[1], colour[2] - reference[2]
+    along = y * reference[0] + u * (reference[1] - 128.0) + v * (reference[2] - 128.0)
+    return (y * y + u * u + v * v - along * along * giving) * (1.0 / NOISE_LEVELS**2)
 
 
 @njit(cache=True, nogil=True)
@@ -101,8 +103,9 @@ def is_of(
     """
     own = beside = np.inf
     for k in range(palette.shape[0]):
-        own = min(own, _distance2(inner, palette[k], SHADING_ELSEWHERE))
-        beside = min(beside, _distance2(outer, palette[k], SHADING_ELSEWHERE))
+        giving = _giving(palette[k], SHADING_ELSEWHERE)
+        own = min(own, _distance2(inner, palette[k], giving))
+        beside = min(beside, _distance2(outer, palette[k], giving))
     return palette.shape[0] == 0 or own < max(LIKE**2, MORE_LIKE**2 * beside)
 
 
@@ -156,16 +159,17 @@ def outer_side(
     Further out there may be other things still. `count` where there is no step.
     """
     total = best = 0.0
-    first = count
+    first, giving = count, _giving(inner, SHADING)
     for k in range(count):
-        total += LIKE - min(math.sqrt(_distance2(colours[k], inner, SHADING)), 2.0 * LIKE)
+        distance2 = _distance2(colours[k], inner, giving)
+        total += LIKE - math.sqrt(min(distance2, (2.0 * LIKE) ** 2))
         if total >= best:
             best, first = total, k + 1
     if first + few > count:
         return count
-    top, at = _distance2(colours[first], inner, SHADING), first
+    top, at = _distance2(colours[first], inner, giving), first
     for k in range(first + 1, count - few + 1):
-        distance2 = _distance2(colours[k], inner, SHADING)
+        distance2 = _distance2(colours[k], inner, giving)
         if distance2 > STILL_RISING**2 * top:
             # chroma is shared by pairs and follows brightness late: near the step itself any bends
             bend = _bend(colours, first + few // 2 + 1, k, inner)

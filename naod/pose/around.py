@@ -37,7 +37,10 @@ def seen_outline(
 
 @njit(cache=True, nogil=True)
 def narrowest(image: NDArray[np.float64], pieces: int) -> float:
-    """Least width of a closed outline on the plane z = 1, across one of its long pieces."""
+    """Least width of a closed outline on the plane z = 1, across one of its long pieces.
+
+    Nothing where it is but a point.
+    """
     longest = 0.0
     for k in range(pieces):
         du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
@@ -46,14 +49,14 @@ def narrowest(image: NDArray[np.float64], pieces: int) -> float:
     for k in range(pieces):
         du, dv = image[k + 1, 0] - image[k, 0], image[k + 1, 1] - image[k, 1]
         length = math.hypot(du, dv)
-        if length < 0.2 * longest:
+        if length <= 0.2 * longest:
             continue
         reach = 0.0
         for i in range(pieces):
             gap = dv * (image[i, 0] - image[k, 0]) - du * (image[i, 1] - image[k, 1])
             reach = max(reach, abs(gap) / length)
         best = min(best, reach)
-    return best
+    return best if math.isfinite(best) else 0.0
 
 
 @njit(cache=True, nogil=True)

@@ -110,7 +110,8 @@ def residuals_of(
     n = points.shape[0]
     residuals, jacobian, edges = np.empty(n), np.empty((n, 6)), np.empty(n, dtype=np.int64)
     R, t = T[:, :3].copy(), T[:, 3].copy()
-    compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
+    corners = np.full(n, -1)
+    compare(kind, half_width, half_height, R, t, points, corners, residuals, jacobian, edges)
     return residuals
 
 

@@ -62,33 +62,38 @@ def compare(
     R: NDArray[np.float64],
     t: NDArray[np.float64],
     points: NDArray[np.float64],
+    corners: NDArray[np.int64],
     residuals: NDArray[np.float64],
     jacobian: NDArray[np.float64],
     edges: NDArray[np.int64],
 ) -> None:
-    """Residuals (n,), Jacobian (n, 6) and edges (n,) of points (n, 2), all on the plane z = 1."""
+    """Residuals (n,), Jacobian (n, 6) and edges (n,) of points (n, 2), all on the plane z = 1.
+
+    corners: (n,) of the outline, the nearest to each point when last asked, negative where that is
+    not known; they are brought up to date.
+    """
     vertices, image = np.empty((VERTICES, 4)), np.empty((VERTICES, 3))
     names, X = np.empty(VERTICES, dtype=np.int64), np.empty(3)
     pieces = outline(kind, half_width, half_height, R, t, vertices, names)
     project(R, t, vertices, pieces + 1, image)
     for i in range(points.shape[0]):
         u, v = points[i, 0], points[i, 1]
-        piece, s = nearest(kind, image, pieces, u, v)
+        piece, s, corners[i] = nearest(kind, image, pieces, u, v, corners[i])
         near, far = image[piece, 2], image[piece + 1, 2]
         foot(kind, half_width, vertices, names[piece], piece,
               s * near / (s * near + (1.0 - s) * far), X)  # fmt: skip
         a0 = R[0, 0] * X[0] + R[0, 1] * X[1] + R[0, 2] * X[2]
         a1 = R[1, 0] * X[0] + R[1, 1] * X[1] + R[1, 2] * X[2]
         a2 = R[2, 0] * X[0] + R[2, 1] * X[1] + R[2, 2] * X[2]
-        depth = max(a2 + t[2], DEPTH_MIN_M)
-        pu, pv = (a0 + t[0]) / depth, (a1 + t[1]) / depth
+        nearness = 1.0 / max(a2 + t[2], DEPTH_MIN_M)
+        pu, pv = (a0 + t[0]) * nearness, (a1 + t[1]) * nearness
         du, dv = image[piece + 1, 0] - image[piece, 0], image[piece + 1, 1] - image[piece, 1]
         if is_arc(kind, names[piece]):
             du, dv = tangent(R, X, pu, pv, du, dv)
-        length = max(math.hypot(du, dv), 1e-12)
-        nu, nv = dv / length, -du / length
+        shorter = 1.0 / max(math.sqrt(du * du + dv * dv), 1e-12)
+        nu, nv = dv * shorter, -du * shorter
         residuals[i] = nu * (u - pu) + nv * (v - pv)
-        g0, g1, g2 = nu / depth, nv / depth, -(nu * pu + nv * pv) / depth
+        g0, g1, g2 = nu * nearness, nv * nearness, -(nu * pu + nv * pv) * nearness
         jacobian[i, 0], jacobian[i, 1], jacobian[i, 2] = -g0, -g1, -g2
         jacobian[i, 3] = -(a1 * g2 - a2 * g1)
         jacobian[i, 4] = -(a2 * g0 - a0 * g2)
@@ -197,10 +202,11 @@ def descend(
     offsets, on that plane, 0 for none; offsets (4,): what they turn out to be.
     """
     A, b, step = np.empty((6, 6)), np.empty(6), np.empty(6)
+    corners = np.full(points.shape[0], -1)
     R, t = T[:, :3].copy(), T[:, 3].copy()
     offsets[:] = 0.0
     for _ in range(iterations):
-        compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
+        compare(kind, half_width, half_height, R, t, points, corners, residuals, jacobian, edges)
         robust_weights(residuals, groups, offsets, floor, weights)
         _normal_equations(
             kind, R, residuals, jacobian, groups, weights, trust, spreads, offsets, A, b
@@ -216,7 +222,7 @@ def descend(
         _turn(R, step[3], step[4], step[5])
         if size < settled and turn < 10.0 * settled:
             break
-    compare(kind, half_width, half_height, R, t, points, residuals, jacobian, edges)
+    compare(kind, half_width, half_height, R, t, points, corners, residuals, jacobian, edges)
     robust_weights(residuals, groups, offsets, floor, weights)
     T[:, :3], T[:, 3] = R, t
 

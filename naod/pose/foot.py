@@ -47,22 +47,52 @@ def _foot_on(image: NDArray[np.float64], k: int, u: float, v: float) -> tuple[fl
 
 
 @njit(cache=True, nogil=True)
-def nearest(
-    kind: int, image: NDArray[np.float64], pieces: int, u: float, v: float
-) -> tuple[int, float]:
-    """The piece of the outline nearest to (u, v), and how far along it the foot lies."""
-    best, near = np.inf, 0
-    if kind == CYLINDER:
+def _gap2(image: NDArray[np.float64], k: int, u: float, v: float) -> float:
+    ru, rv = u - image[k, 0], v - image[k, 1]
+    return ru * ru + rv * rv
+
+
+@njit(cache=True, nogil=True)
+def _corner(image: NDArray[np.float64], pieces: int, u: float, v: float, near: int) -> int:
+    """The corner nearest to (u, v), downhill from one that is near it; from the best if negative.
+
+    Outlines are convex, so that from outside all ways down lead to the same corner.
+    """
+    if near < 0:
+        near, least = 0, np.inf
         for k in range(0, pieces, STRIDE):
-            ru, rv = u - image[k, 0], v - image[k, 1]
-            if ru * ru + rv * rv < best:
-                best, near = ru * ru + rv * rv, k
-        middle = near
-        for step in range(-STRIDE + 1, STRIDE):
-            k = (middle + step) % pieces
-            ru, rv = u - image[k, 0], v - image[k, 1]
-            if ru * ru + rv * rv < best:
-                best, near = ru * ru + rv * rv, k
+            gap2 = _gap2(image, k, u, v)
+            if gap2 < least:
+                near, least = k, gap2
+    else:
+        least = _gap2(image, near, u, v)
+    first = near
+    while True:
+        after = near + 1 if near + 1 < pieces else 0
+        gap2 = _gap2(image, after, u, v)
+        if not gap2 < least:
+            break
+        near, least = after, gap2
+    if near != first:
+        return near
+    while True:
+        before = near - 1 if near > 0 else pieces - 1
+        gap2 = _gap2(image, before, u, v)
+        if not gap2 < least:
+            return near
+        near, least = before, gap2
+
+
+@njit(cache=True, nogil=True)
+def nearest(
+    kind: int, image: NDArray[np.float64], pieces: int, u: float, v: float, near: int
+) -> tuple[int, float, int]:
+    """The piece of the outline nearest to (u, v), how far along it the foot lies, and its corner.
+
+    near: a corner to begin at, negative where none is known.
+    """
+    if kind == CYLINDER:
+        near = _corner(image, pieces, u, v, near)
         # either side of the nearest corner, and the two long straight pieces
         candidates = (near, near - 1 if near > 0 else pieces - 1, ARC, 2 * ARC + 1)
     else:
@@ -72,28 +102,26 @@ def nearest(
         distance2, s = _foot_on(image, k, u, v)
         if distance2 < best:
             best, piece, along = distance2, k, s
-    return piece, along
+    return piece, along, near
 
 
 @njit(cache=True, nogil=True)
 def foot(
     kind: int,
-    half_width: float,
+    radius: float,
     vertices: NDArray[np.float64],
     edge: int,
     piece: int,
     part: float,
     X: NDArray[np.float64],
 ) -> None:
-    """The point of the object at a part of a piece."""
+    """The point of the object at a part of a piece; of an arc's, the one out there on the rim."""
+    for k in range(3):
+        X[k] = vertices[piece, k] + part * (vertices[piece + 1, k] - vertices[piece, k])
     if is_arc(kind, edge):
-        angle = vertices[piece, 3] + part * (vertices[piece + 1, 3] - vertices[piece, 3])
-        X[0] = half_width * math.sin(angle)
-        X[1] = vertices[piece, 1]
-        X[2] = half_width * math.cos(angle)
-    else:
-        for k in range(3):
-            X[k] = vertices[piece, k] + part * (vertices[piece + 1, k] - vertices[piece, k])
+        outwards = radius / max(math.sqrt(X[0] * X[0] + X[2] * X[2]), 1e-12)
+        X[0] *= outwards
+        X[2] *= outwards
 
 
 @njit(cache=True, nogil=True)
@@ -109,6 +137,6 @@ def tangent(
     z = R[2, 0] * X[2] - R[2, 2] * X[0]
     tu, tv = x - u * z, y - v * z
     along = tu * du + tv * dv
-    if abs(along) < 0.9 * math.hypot(tu, tv) * math.hypot(du, dv):
+    if along * along < 0.81 * (tu * tu + tv * tv) * (du * du + dv * dv):
         return du, dv
     return (tu, tv) if along > 0.0 else (-tu, -tv)

@@ -50,7 +50,8 @@ def residuals_at(shape, T, points):
     n = len(points)
     residuals, jacobian, edges = np.empty(n), np.empty((n, 6)), np.empty(n, dtype=np.int64)
     R, t = np.ascontiguousarray(T[:3, :3]), T[:3, 3].copy()
-    compare(*figures(shape), R, t, points, residuals, jacobian, edges)
+    corners = np.full(n, -1)
+    compare(*figures(shape), R, t, points, corners, residuals, jacobian, edges)
     return residuals, jacobian
 
 
