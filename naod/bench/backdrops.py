@@ -149,7 +149,9 @@ def measure(
         box = 0.0 if found is None else polygon_iou(found.blob.corners_px, truth.corners_px)
         tally.boxes.append(box)
         tally.found += found is not None
-        pose = None if found is None else locate(frame.yuyv, found.blob, shape, camera)
+        if found is None:
+            continue
+        pose = locate(frame.yuyv, found.blob, shape, camera, exposure_s=frame.exposure_s)
         if pose is not None:
             add(tally.errors, pose, frame, shape, camera)
 

@@ -52,6 +52,7 @@ class Frame:
     mask: NDArray[np.uint8] | None
     T_camera_object: NDArray[np.float64] | None = None
     motion_px: tuple[float, float] = (0.0, 0.0)
+    exposure_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,8 +123,8 @@ class Walk:
         for n in range(1, self.settings.count + 1):
             poses = self._poses(n, exposure_s)
             yuyv = take(poses[0], poses, self._noise(n))
-            empty = Frame(yuyv, None, None, self._motion(poses))
-            frames.append(empty if absent else self._frame(yuyv, poses))
+            empty = Frame(yuyv, None, None, self._motion(poses), exposure_s)
+            frames.append(empty if absent else self._frame(yuyv, poses, exposure_s))
         return tuple(frames)
 
     def shown(self) -> tuple[NDArray[np.uint8], Region]:
@@ -132,12 +133,14 @@ class Walk:
         yuyv = self._studio.frame_at(before, noise_seed=self._noise(0))
         return yuyv, marked_region(self._studio.mask_at(before))
 
-    def _frame(self, yuyv: NDArray[np.uint8], poses: NDArray[np.float64]) -> Frame:
+    def _frame(
+        self, yuyv: NDArray[np.uint8], poses: NDArray[np.float64], exposure_s: float
+    ) -> Frame:
         mask = self._studio.mask_at(poses[0], poses)
         T_world_camera = poses[MOMENTS // 2]
         T = np.linalg.inv(T_world_camera) @ self._studio.T_world_object
         seen = np.count_nonzero(mask) >= SEEN_MIN_SHARE * mask.size
-        return Frame(yuyv, mask if seen else None, T, self._motion(poses))
+        return Frame(yuyv, mask if seen else None, T, self._motion(poses), exposure_s)
 
     def _motion(self, poses: NDArray[np.float64]) -> tuple[float, float]:
         places = np.linalg.inv(poses[[0, -1]]) @ self._studio.T_world_object[:, 3]

@@ -99,7 +99,9 @@ def measure(sequence: Sequence, errors: dict[Estimator, Errors]) -> None:
             kept.frames += 1
             if found is None:
                 continue
-            pose = locate(frame.yuyv, found.blob, shape, camera, estimator)
+            pose = locate(
+                frame.yuyv, found.blob, shape, camera, estimator, exposure_s=frame.exposure_s
+            )
             if pose is not None:
                 add(kept, pose, frame, shape, camera)
 

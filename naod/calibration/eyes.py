@@ -42,7 +42,7 @@ class Eyes:
             return None, "nothing of its colour is in view"
         if blob.clipped:
             return None, f"it is cut off at the {' and '.join(blob.clipped)}"
-        pose = locate(frame.yuyv, blob, self.shape, self.camera)
+        pose = locate(frame.yuyv, blob, self.shape, self.camera, exposure_s=frame.exposure_s)
         if pose is None:
             return None, "what has its colour has not its outline"
         edges = measured_edges(frame.yuyv, pose, self.shape, self.camera)

@@ -163,7 +163,9 @@ class Equipment:
     def _locate(
         self, frame: Frame, blob: Blob, estimator: Estimator, near: Prior | None
     ) -> ObjectPose | None:
-        return locate(frame.yuyv, blob, self.shape, self.camera, estimator, near)
+        return locate(
+            frame.yuyv, blob, self.shape, self.camera, estimator, near, exposure_s=frame.exposure_s
+        )
 
     def _segmenter_for(self, model: ColourModel) -> Segmenter:
         if self._segmenter is None:

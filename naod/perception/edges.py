@@ -3,7 +3,7 @@
 Along each normal the colour goes from one plateau to another. The profile is projected on the
 direction that separates the two best, the changes of brightness that shading makes inside counted
 as noise; where it is that of half the light of either lies the edge, roughly. `placing` then puts
-it exactly.
+it exactly, first each by itself, then knowing over how many pixels the others mix light.
 """
 
 from __future__ import annotations
@@ -18,23 +18,31 @@ from numpy.typing import NDArray
 from naod.perception.encoding import mixture_scores
 from naod.perception.placing import PAIRS_MAX, SHARES, place_edge
 from naod.perception.profile import contrast_of, is_between, is_of, outer_side, plateau, profile
+from naod.perception.steps import crossing, goes_to, unevenness, width_of
 
 STEP_PX = 0.5
 SAMPLES_MAX = 129
 GATHERED2 = 0.9
 """Variance that shared chroma and bilinear samples add to a profile along a row, px squared."""
 
-OFFSET, SIGMA, WIDTH, WITHIN, UNEVEN = range(5)
-COLUMNS = 5
-"""Of what is measured at a place; `UNEVEN`: by how much of the step the two sides rise per px."""
+OFFSET, SIGMA, WIDTH, WITHIN, UNEVEN, GOES = range(6)
+COLUMNS = 6
+"""Of what is measured at a place; `UNEVEN`: by how much of the step the two sides rise per px;
+`GOES`: as `goes_to` has it, 0 where nothing moved much."""
 
+_MIXING, _OF_WIDTH, _CONTRAST, _INNER, _DIRECTION, _KEPT = 0, 1, 2, 3, 6, 9
+"""Of an edge that is placed: px over which it mixes light, information about that, its contrast,
+and the inner colour and direction of its two sides."""
 
-SLOPE_MIN = 0.02
-SLOPE_EXACT = 0.04
-"""Where light mixes over more pixels than this says, their number is too large to matter."""
+WIDTH_MAX_PX = 25.0
+"""Where light mixes over more pixels than this, their number is too large to matter."""
 
-SLOW_PX = 5.0
-"""A step that seems to rise over more than this at its middle is asked how far its quarters are."""
+PACE_FROM_PX = 6.0
+"""Shorter motions leave no beginning of a step to look at."""
+
+ALIKE_PX, ALIKE_SHARE = 0.1, 0.05
+"""Standard deviation of the widths over which edges along one direction mix light, and of such a
+width, its share."""
 
 CONTRAST_MIN = 3.0
 """Separation of the plateaus, in standard deviations, below which there is no edge to see."""
@@ -54,99 +62,6 @@ class Edges:
     width_px: NDArray[np.float64]
     within: NDArray[np.bool_]
     seen: NDArray[np.bool_]
-
-
-@njit(cache=True, nogil=True)
-def _split(scores: NDArray[np.float64], count: int, level: float) -> int:
-    """Last sample inside, for the step that fits the whole profile best; -1 if there is none."""
-    total, best, at = 0.0, 0.0, -1
-    for k in range(count - 1):
-        total += level - min(max(scores[k], -0.2), 1.2)
-        if total > best:
-            best, at = total, k
-    return at
-
-
-@njit(cache=True, nogil=True)
-def _slope(scores: NDArray[np.float64], count: int, k: int, step: float) -> float:
-    """Rise per pixel about the step after sample k; 0 where the profile ends too soon."""
-    if k < 2 or k > count - 4:
-        return 0.0
-    return (scores[k + 3] - scores[k - 2]) / (5.0 * step)
-
-
-@njit(cache=True, nogil=True)
-def _crossing(
-    colours: NDArray[np.float64],
-    count: int,
-    inner: NDArray[np.float64],
-    direction: NDArray[np.float64],
-    level: float,
-    step: float,
-    scores: NDArray[np.float64],
-) -> tuple[float, float]:
-    """Which sample of a profile, in fractions, is at a level, and its slope; slope 0 if none."""
-    for k in range(count):
-        scores[k] = 0.0
-        for c in range(3):
-            scores[k] += direction[c] * (colours[k, c] - inner[c])
-    k = _split(scores, count, level)
-    slope = _slope(scores, count, k, step)
-    if slope < SLOPE_MIN or not scores[k] <= level < scores[k + 1]:
-        return 0.0, 0.0
-    place = k + (level - scores[k]) / (scores[k + 1] - scores[k])
-    return place, slope
-
-
-@njit(cache=True, nogil=True)
-def _rise(
-    scores: NDArray[np.float64], count: int, at: float, shares: NDArray[np.float64], step: float
-) -> float:
-    """Px over which light mixes, from where a quarter of it and three quarters are of one side."""
-    lower, upper = shares[SHARES // 4], shares[SHARES - 1 - SHARES // 4]
-    first, last = int(at), int(at) + 1
-    while first > 0 and scores[first] > lower:
-        first -= 1
-    while last < count - 1 and scores[last] < upper:
-        last += 1
-    begin, end = float(first), float(last)
-    if scores[first + 1] > scores[first]:
-        begin += min(max((lower - scores[first]) / (scores[first + 1] - scores[first]), 0.0), 1.0)
-    if scores[last] > scores[last - 1]:
-        end -= min(max((scores[last] - upper) / (scores[last] - scores[last - 1]), 0.0), 1.0)
-    return 2.0 * (end - begin) * step
-
-
-@njit(cache=True, nogil=True)
-def _unevenness(scores: NDArray[np.float64], count: int, few: int, step: float) -> float:
-    """By how much of the step a profile's outermost few samples rise per px, both sides together.
-
-    Sides that are not flat hide how far the step goes up or down.
-    """
-    half, rise = few // 2, 0.0
-    for k in range(half):
-        inner = scores[few - half + k] - scores[k]
-        rise += scores[count - half + k] - scores[count - few + k] + inner
-    return rise / (half * (few - half) * step)
-
-
-@njit(cache=True, nogil=True)
-def _exactly(
-    yuyv: NDArray[np.uint8],
-    x: float,
-    y: float,
-    normal: NDArray[np.float64],
-    slope: float,
-    plateaus: NDArray[np.float64],
-    shares: NDArray[np.float64],
-    pairs: NDArray[np.float64],
-) -> tuple[float, float]:
-    """Shift of an edge found at (x, y) to where it exactly is, and the information about it."""
-    gathered2 = GATHERED2 * normal[0] ** 2 + 0.2 * normal[1] ** 2
-    width = math.sqrt(max(1.0 / slope**2 - 12.0 * gathered2, 1.0))
-    return place_edge(
-        yuyv, x, y, normal[0], normal[1], width, plateaus[0], plateaus[2], shares, pairs
-    )
 
 
 @njit(cache=True, nogil=True)
@@ -183,6 +98,85 @@ def _sides(
 
 
 @njit(cache=True, nogil=True)
+def _seeming(normal: NDArray[np.float64], width: float) -> float:
+    """Px over which light mixes, by the width of a step along a normal."""
+    gathered2 = GATHERED2 * normal[0] ** 2 + 0.2 * normal[1] ** 2
+    return math.sqrt(max(width * width - 12.0 * gathered2, 1.0))
+
+
+@njit(cache=True, nogil=True)
+def _place(
+    yuyv: NDArray[np.uint8],
+    place: NDArray[np.float64],
+    normal: NDArray[np.float64],
+    width: float,
+    prior: float,
+    curve: NDArray[np.float64],
+    pairs: NDArray[np.float64],
+    kept: NDArray[np.float64],
+    found: NDArray[np.float64],
+) -> bool:
+    """Put an edge where its pixels say; False, and nothing changed, where they do not."""
+    shift, mixing, information, of_width = place_edge(
+        yuyv, place[0] + found[OFFSET] * normal[0], place[1] + found[OFFSET] * normal[1],
+        normal[0], normal[1], width, prior, kept[_INNER:_DIRECTION], kept[_DIRECTION:_KEPT], curve,
+        pairs,
+    )  # fmt: skip
+    if not information > 0.0:
+        return False
+    contrast = kept[_CONTRAST]
+    found[OFFSET] += shift
+    found[SIGMA] = 1.0 / (contrast * math.sqrt(information))
+    kept[_MIXING], kept[_OF_WIDTH] = mixing, max(of_width, 0.0) * contrast * contrast
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _usual(kept: NDArray[np.float64], groups: NDArray[np.int64], side: int, count: int) -> float:
+    """Median of the widths over which a pair of edges mixes light, by what is known of each."""
+    total = below = 0.0
+    for i in range(count):
+        if groups[i] % 2 == side:
+            total += kept[i, _OF_WIDTH]
+    for i in np.argsort(kept[:count, _MIXING]):
+        if groups[i] % 2 == side:
+            below += kept[i, _OF_WIDTH]
+            if below > 0.0 and 2.0 * below >= total:
+                return float(kept[i, _MIXING])
+    return 0.0
+
+
+@njit(cache=True, nogil=True)
+def _place_alike(
+    yuyv: NDArray[np.uint8],
+    places: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    count: int,
+    groups: NDArray[np.int64],
+    curves: NDArray[np.float64],
+    pairs: NDArray[np.float64],
+    kept: NDArray[np.float64],
+    found: NDArray[np.float64],
+) -> None:
+    """Place edges again that mix light over another width than their neighbours seem to.
+
+    Where an edge falls on the border of two pixels it may be sharp, or wider and a bit further out:
+    they look the same. The others of its direction tell.
+    """
+    for side in range(2):
+        usual = _usual(kept, groups, side, count)
+        spread = ALIKE_PX + ALIKE_SHARE * usual
+        for i in range(count):
+            if groups[i] % 2 != side or kept[i, _OF_WIDTH] == 0.0:
+                continue
+            if abs(kept[i, _MIXING] - usual) >= ALIKE_PX:
+                prior = 1.0 / (spread * kept[i, _CONTRAST]) ** 2
+                _place(
+                    yuyv, places[i], normals[i], usual, prior, curves[i], pairs, kept[i], found[i]
+                )
+
+
+@njit(cache=True, nogil=True)
 def measure(
     yuyv: NDArray[np.uint8],
     places: NDArray[np.float64],
@@ -194,47 +188,55 @@ def measure(
     depth: float,
     palette: NDArray[np.float64],
     exact: bool,
+    mixings: NDArray[np.float64],
+    groups: NDArray[np.int64],
     found: NDArray[np.float64],
 ) -> None:
     """What `measure_edges` says of the first `count` places, into `found` (n, COLUMNS).
 
     reaches: (n,) px. plateau_px: the outermost of a profile, on either side, that is one colour.
     step: px between samples of a profile; coarser ones do where edges are only looked for.
-    palette: (m, 3) colours of the object, of which the inner side must be one; none: any.
+    palette: (m, 3) colours of the object, of which the inner side must be one; none: any. mixings:
+    (n,) px over which motion is expected to mix light. groups: (n,) which edge each is of; even
+    ones are along one direction, odd ones along another.
     """
     height, width = yuyv.shape[0], yuyv.shape[1]
     colours, scores = np.empty((SAMPLES_MAX, 3)), np.empty(SAMPLES_MAX)
     plateaus, scatter = np.empty((3, 3)), np.empty((3, 3))
-    shares, pairs = np.empty(SHARES), np.empty((PAIRS_MAX, 3))
+    curves, pairs = np.empty((count, SHARES)), np.empty((PAIRS_MAX, 3))
+    kept = np.zeros((count, _KEPT))
     few = max(int(plateau_px / step), 2)
     for i in range(count):
-        nx, ny = normals[i, 0], normals[i, 1]
+        normal, one, curve = normals[i], found[i], curves[i]
         reach = min(reaches[i], (SAMPLES_MAX // 2) * step)
-        x, y = places[i, 0] + reach * nx, places[i, 1] + reach * ny
-        found[i, SIGMA] = np.inf
-        found[i, WITHIN] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
-        if not found[i, WITHIN]:
+        x, y = places[i, 0] + reach * normal[0], places[i, 1] + reach * normal[1]
+        one[SIGMA] = np.inf
+        one[WITHIN] = 0.0 <= x <= width - 1.0 and 0.0 <= y <= height - 1.0
+        if not one[WITHIN]:
             continue
-        samples = profile(yuyv, places[i], normals[i], reach, step, depth, colours)
+        samples = profile(yuyv, places[i], normal, reach, step, depth, colours)
         contrast, end = _sides(colours, samples, few, exact, palette, plateaus, scatter)
         if contrast == 0.0:
             continue
-        mixture_scores(plateaus[0], plateaus[1], plateaus[2], shares)
-        half = shares[SHARES // 2]
-        at, slope = _crossing(colours, end, plateaus[0], plateaus[2], half, step, scores)
+        mixture_scores(plateaus[0], plateaus[1], plateaus[2], curve)
+        half = curve[SHARES // 2]
+        at, slope = crossing(colours, end, plateaus[0], plateaus[2], half, step, scores)
         if slope == 0.0:
             continue
-        if 1.0 / slope > SLOW_PX:
-            slope = 1.0 / max(_rise(scores, end, at, shares, step), SLOW_PX)
-        offset, information = (at - samples // 2) * step, slope * slope
-        if exact and slope > SLOPE_EXACT:
-            x, y = places[i, 0] + offset * nx, places[i, 1] + offset * ny
-            shift, information = _exactly(yuyv, x, y, normals[i], slope, plateaus, shares, pairs)
-            offset += shift
-        if information > 0.0:
-            found[i, OFFSET], found[i, WIDTH] = offset, 1.0 / slope
-            found[i, UNEVEN] = _unevenness(scores, end, few, step)
-            found[i, SIGMA] = 1.0 / (contrast * math.sqrt(information))
+        one[OFFSET] = (at - samples // 2) * step
+        one[WIDTH] = width_of(scores, end, at, slope, curve, step)
+        one[UNEVEN] = unevenness(scores, end, few, step)
+        if not exact or one[WIDTH] >= WIDTH_MAX_PX:
+            one[SIGMA] = one[WIDTH] / contrast
+            continue
+        if mixings[i] > PACE_FROM_PX:
+            one[GOES] = goes_to(scores, end, at, curve, step, mixings[i])
+        kept[i, _CONTRAST] = contrast
+        kept[i, _INNER:_DIRECTION], kept[i, _DIRECTION:_KEPT] = plateaus[0], plateaus[2]
+        seeming = _seeming(normal, one[WIDTH])
+        _place(yuyv, places[i], normal, seeming, 0.0, curve, pairs, kept[i], one)
+    if exact:
+        _place_alike(yuyv, places, normals, count, groups, curves, pairs, kept, found)
 
 
 _ANY = np.empty((0, 3))
@@ -267,6 +269,8 @@ def measure_edges(
         depth_px,
         _ANY,
         exact,
+        np.zeros(count),
+        np.zeros(count, dtype=np.int64),
         found,
     )
     return Edges(

@@ -26,8 +26,9 @@ MIXING_MAX_PX = 24.0
 SHIFT_MAX_PX = 2.0
 STEPS = 6
 WIDTH_MIN_PX = 0.9
-WIDTH_PRIOR = 1e-3
-"""Information that the width is as it seems from the profile, per score variance and px squared."""
+WIDTH_DAMPING = 1e-3
+"""Information about the width that a step counts on, per score variance and px squared: pixels on
+one side of the mixing or the other say nothing of it."""
 
 
 @njit(cache=True, nogil=True)
@@ -91,11 +92,13 @@ def _improve(
     count: int,
     shift: float,
     width: float,
+    seeming: float,
+    prior: float,
     step: NDArray[np.float64],
-) -> float:
-    """Gauss-Newton step of shift and width into `step` (2,); returns the shift's information."""
-    a11 = a12 = b1 = b2 = 0.0
-    a22 = WIDTH_PRIOR
+) -> tuple[float, float]:
+    """Gauss-Newton step of shift and width into `step` (2,); returns the information of both."""
+    a11 = a12 = b1 = 0.0
+    a22, b2 = WIDTH_DAMPING + prior, prior * (seeming - width)
     for k in range(count):
         pair = pairs[k]
         a, b = pair[0] - shift, pair[1] - shift
@@ -111,10 +114,10 @@ def _improve(
         b2 += by_width * gap
     determinant = a11 * a22 - a12 * a12
     if a11 < 1e-6 or determinant < 1e-12:
-        return 0.0
+        return 0.0, 0.0
     step[0] = (a22 * b1 - a12 * b2) / determinant
     step[1] = (a11 * b2 - a12 * b1) / determinant
-    return determinant / a22
+    return determinant / a22, determinant / a11 - prior - WIDTH_DAMPING
 
 
 @njit(cache=True, nogil=True)
@@ -125,30 +128,33 @@ def place_edge(
     nx: float,
     ny: float,
     width: float,
+    prior: float,
     inner: NDArray[np.float64],
     direction: NDArray[np.float64],
     scores: NDArray[np.float64],
     pairs: NDArray[np.float64],
-) -> tuple[float, float]:
-    """How far outside (x, y) the edge lies, px, and the information about it per score variance.
+) -> tuple[float, float, float, float]:
+    """How far outside (x, y) the edge lies, px; over how many light mixes; what is known of both.
 
-    (nx, ny): unit normal outwards. width: px over which light mixes, roughly. inner, direction,
-    scores: as `encoding.mixture_scores` has them. pairs: (PAIRS_MAX, 3) scratch. Information 0: no
-    edge.
+    That is information per score variance, 0 where there is no edge. (nx, ny): unit normal
+    outwards. width: px over which light seems to mix, and prior: information that it does, 0 where
+    it is but a start. inner, direction, scores: as `encoding.mixture_scores` has them. pairs:
+    (PAIRS_MAX, 3) scratch.
     """
     width = min(max(width, WIDTH_MIN_PX), MIXING_MAX_PX)
     across = 0.5 * width + ASIDE_PX
     count = _gather(yuyv, x, y, nx, ny, across, inner, direction, pairs)
     step = np.zeros(2)
-    shift = information = 0.0
+    shift = information = of_width = 0.0
+    seeming = width
     for _ in range(STEPS):
-        information = _improve(scores, pairs, count, shift, width, step)
+        information, of_width = _improve(scores, pairs, count, shift, width, seeming, prior, step)
         if information == 0.0:
-            return 0.0, 0.0
+            return 0.0, width, 0.0, 0.0
         shift += min(max(step[0], -1.0), 1.0)
         width = min(max(width + min(max(step[1], -1.0), 1.0), WIDTH_MIN_PX), MIXING_MAX_PX)
         if abs(shift) > SHIFT_MAX_PX + 0.25 * width:
-            return 0.0, 0.0
+            return 0.0, width, 0.0, 0.0
         if abs(step[0]) < 0.005:
             break
-    return shift, information
+    return shift, width, information, of_width

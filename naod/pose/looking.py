@@ -8,18 +8,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.edges import COLUMNS, OFFSET, SIGMA, UNEVEN, WIDTH, WITHIN, measure
+from naod.perception.edges import COLUMNS, OFFSET, SIGMA, WITHIN, measure
 from naod.perception.profile import colour_at
 from naod.pose.around import narrowest, places_around, seen_outline
 from naod.pose.contour import VERTICES
 from naod.pose.lens import focal
-
-LOOKED, FOUND, BLUR, SPAN, MOVED, RISE, RISE_ASIDE, UNEVEN_SIDES = range(8)
-TALLY = 11
-"""Of a tally: places looked at, edges found there, width of the more blurred ones, the object's
-width, how far most edges were from where they were looked for, the width of steps at top and
-bottom, and at the sides, px; and for each edge by how much of its step its two sides rise per px.
-"""
+from naod.pose.tally import FOUND, LOOKED, RISE, SHARP_RISE_PX, SPAN, doubt, mixed_px, tell
 
 APART_PX = 2.0
 """Each edge is placed by pixels as far along it: closer ones would say the same again."""
@@ -40,9 +34,6 @@ STEP_PX = 0.5
 SLOPE_SAMPLES = 5.0
 """Over which a step's slope is taken: it seems no narrower."""
 
-SHARP_RISE_PX = 3.2
-"""Width of a step without motion, as bilinear samples of shared chroma show it."""
-
 STEP_REACH_PX = 2.0
 """How far from a sharp step nothing of it is seen, and how far it may be from its outline."""
 
@@ -51,11 +42,6 @@ PLATEAU_PX = 2.0
 
 INSIDE = 0.4
 """Of the object's width: so far inside there is surely nothing else."""
-
-BLURRED_SHARE = 0.8
-"""Motion blurs the edges across it: the width of an edge that four of five do not reach."""
-
-MOST_SHARE = 0.7
 
 
 @njit(cache=True, nogil=True)
@@ -73,52 +59,6 @@ def _palette(
         dx, dy = places[i, 0] - x, places[i, 1] - y
         colour_at(yuyv, x + PALETTE_SHARE * dx, y + PALETTE_SHARE * dy, colours, k)
     return colours
-
-
-@njit(cache=True, nogil=True)
-def mixed_px(rise_px: float, least_px: float) -> float:
-    """Px over which motion mixes light, by the width of a step and that of one without motion."""
-    return math.sqrt(max(rise_px * rise_px - least_px * least_px, 0.0))
-
-
-@njit(cache=True, nogil=True)
-def aliased(mixed_px: float) -> float:
-    """What is left of the errors that a sharp step has by where it falls among the pixels."""
-    return 1.0 / (1.0 + 0.5 * mixed_px)
-
-
-@njit(cache=True, nogil=True)
-def _tell(
-    found: NDArray[np.float64],
-    edges: NDArray[np.int64],
-    count: int,
-    least_px: float,
-    tally: NDArray[np.float64],
-) -> None:
-    """Widths of steps, their sides and distances from the outline, into `tally`."""
-    widths, moves, pair = np.empty(count), np.empty(count), np.empty(count)
-    seen = 0
-    for i in range(count):
-        if np.isfinite(found[i, SIGMA]):
-            widths[seen], moves[seen] = found[i, WIDTH], abs(found[i, OFFSET])
-            seen += 1
-    tally[BLUR] = np.sort(widths[:seen])[int(BLURRED_SHARE * seen)] if seen else 0.0
-    tally[MOVED] = np.sort(moves[:seen])[int(MOST_SHARE * seen)] if seen else 0.0
-    for edge in range(4):
-        n, rise = 0, 0.0
-        for i in range(count):
-            if np.isfinite(found[i, SIGMA]) and edges[i] == edge:
-                rise += found[i, UNEVEN]
-                n += 1
-        tally[UNEVEN_SIDES + edge] = abs(rise) / max(n, 1)
-    for side in range(2):
-        n = 0
-        for i in range(count):
-            if np.isfinite(found[i, SIGMA]) and edges[i] % 2 == side:
-                pair[n] = found[i, WIDTH]
-                n += 1
-        typical = float(np.median(pair[:n])) if n else tally[BLUR]
-        tally[RISE + side] = math.hypot(SHARP_RISE_PX, mixed_px(typical, least_px))
 
 
 @njit(cache=True, nogil=True)
@@ -142,12 +82,12 @@ def look(
     points (most, 2) and sigmas (most,) in px; groups (most,): the edge each is of. looked (4,):
     places the picture shows of each edge.
     wide_px: how far to look, roughly, or WIDE of the object's width if that is more; 0: as near as
-    the steps in `tally` are wide, and exactly.
+    the steps in `tally` are wide, and exactly; then sigmas know which edges are unlike others.
     """
     image, names = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
     places, normals = np.empty((most, 2)), np.empty((most, 2))
     edges, reaches = np.empty(most, dtype=np.int64), np.empty(most)
-    found = np.zeros((most, COLUMNS))
+    found, mixings = np.zeros((most, COLUMNS)), np.zeros(most)
     pieces = seen_outline(kind, half_width, half_height, T, image, names)
     span = focal(lens) * narrowest(image, pieces)
     count = places_around(image, names, pieces, lens, most, APART_PX, places, normals, edges)
@@ -155,14 +95,18 @@ def look(
     reaches[:] = max(wide_px, WIDE * span)
     if exact:
         for i in range(count):
-            mixed = mixed_px(tally[RISE + edges[i] % 2], SHARP_RISE_PX)
-            reaches[i] = 0.5 * mixed + STEP_REACH_PX + PLATEAU_PX
+            mixings[i] = mixed_px(tally[RISE + edges[i] % 2], SHARP_RISE_PX)
+            reaches[i] = 0.5 * mixings[i] + STEP_REACH_PX + PLATEAU_PX
     else:
         step, plateau = max(STEP_PX, reaches[0] / WIDE_SAMPLES), WIDE_PLATEAU * reaches[0]
     measure(
         yuyv, places, normals, count, reaches, plateau, step, INSIDE * span,
-        _palette(yuyv, places, count), exact, found,
+        _palette(yuyv, places, count), exact, mixings, edges, found,
     )  # fmt: skip
+    tell(found, edges, count, max(SHARP_RISE_PX, SLOPE_SAMPLES * step), tally)
+    doubts = np.zeros(count)
+    if exact:
+        doubt(found, edges, count, tally, doubts)
     seen = 0
     looked[:] = 0
     for i in range(count):
@@ -172,8 +116,7 @@ def look(
             continue
         for c in range(2):
             points[seen, c] = places[i, c] + found[i, OFFSET] * normals[i, c]
-        sigmas[seen], groups[seen] = found[i, SIGMA], edges[i]
+        sigmas[seen], groups[seen] = math.hypot(found[i, SIGMA], doubts[i]), edges[i]
         seen += 1
     tally[LOOKED], tally[FOUND], tally[SPAN] = looked.sum(), seen, span
-    _tell(found, edges, count, max(SHARP_RISE_PX, SLOPE_SAMPLES * step), tally)
     return seen

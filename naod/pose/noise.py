@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-FLOOR, COMMON, EDGE, PER_BLUR, PER_RISE, PER_POINT = range(6)
+FLOOR, COMMON, EDGE, PER_BLUR, PER_RISE, PER_POINT, UNSTEADY = range(7)
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +19,7 @@ class EdgeNoise:
     each over which motion mixes light there. `edge_per_rise`: px over which the sides of a step go
     on as they rise where they are seen: so much of the mixing an edge may be off. `per_point`:
     neighbours that err together. `fits_px`: a point further away belongs to something else.
+    `unsteady_px`: each edge by itself where motion during the exposure was not even.
     """
 
     floor_px: float
@@ -28,10 +29,11 @@ class EdgeNoise:
     edge_per_rise: float
     per_point: float
     fits_px: float
+    unsteady_px: float = 0.0
 
     @property
     def figures(self) -> NDArray[np.float64]:
-        """(6,) as the kernels take them."""
+        """(7,) as the kernels take them."""
         return np.array(
             [
                 self.floor_px,
@@ -40,5 +42,6 @@ class EdgeNoise:
                 self.edge_per_blur,
                 self.edge_per_rise,
                 self.per_point,
+                self.unsteady_px,
             ]
         )

@@ -14,26 +14,22 @@ from naod.pose.coarse import CoarseFit
 from naod.pose.contour import figures
 from naod.pose.fit import LAST_ROW, Fit
 from naod.pose.lens import lens_of
-from naod.pose.looking import (
-    BLUR,
-    RISE,
-    RISE_ASIDE,
-    SHARP_RISE_PX,
-    TALLY,
-    aliased,
-    mixed_px,
-)
 from naod.pose.noise import COMMON, EdgeNoise
 from naod.pose.objects import ObjectShape
 from naod.pose.reading import Reading
-from naod.pose.refine import PLACES_MAX, find_edges, find_readings
+from naod.pose.refine import PLACES_MAX, find_edges
 from naod.pose.rivals import RIVALS_MAX, add_rivals, settle
+from naod.pose.tally import BLUR, RISE, RISE_ASIDE, SHARP_RISE_PX, TALLY, aliased, mixed_px
 from naod.pose.uncertainty import stated
+from naod.pose.wide import find_readings
 
 BLURRED = 1.25
 """How much wider a step is before that is called motion."""
 
 HALF = 0.5
+SUPPORTED, DOUBTFUL = 0.88, 12.0
+"""Where less of an outline has edges close to it, others may not be the object's either: sigma is
+larger by so many times the lack."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +118,7 @@ def _told(
         np.vstack([poses[0], LAST_ROW]), s.residuals[:n], s.jacobian[:n], s.edges[:n],
         s.weights[:n], s.groups[:n], s.spreads, s.offsets,
     )  # fmt: skip
+    total *= (1.0 + DOUBTFUL * max(SUPPORTED - support, 0.0)) ** 2
     other = np.vstack([poses[1], LAST_ROW]) if math.isfinite(gap) else None
     reading = Reading(fit, s.points[:n], s.trust[:n], support)
     return Seen(reading, total, blur_of(float(s.tally[BLUR])), seen, other, gap)

@@ -16,11 +16,11 @@ def yuv(light):
     return np.stack([y, 128.0 + 0.564 * (b - y), 128.0 + 0.713 * (r - y)], axis=-1)
 
 
-def profile(strip_px, blur_px, beyond=GREY):
-    """Red for INSIDE_PX, orange for strip_px, then another, smeared, (n, 3); and places in px."""
+def profile(strip_px, blur_px, beyond=GREY, strip=ORANGE):
+    """Red for INSIDE_PX, a strip for strip_px, then another, smeared, (n, 3); and places in px."""
     fine = np.arange(-INSIDE_PX, 24.0, 0.05)
     light = np.where(
-        (fine < 0.0)[:, None], RED, np.where((fine < strip_px)[:, None], ORANGE, beyond)
+        (fine < 0.0)[:, None], RED, np.where((fine < strip_px)[:, None], strip, beyond)
     )
     kernel = np.ones(round(blur_px / 0.05)) / round(blur_px / 0.05)
     padded = np.pad(light, ((kernel.size, kernel.size), (0, 0)), mode="edge")

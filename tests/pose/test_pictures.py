@@ -16,7 +16,7 @@ INSIDE = {CAN: RED, BOARD: YELLOW}
 
 
 def frame(shape, T, rng):
-    covered = coverage(shape, T, samples=3)
+    covered = coverage(shape, T, samples=6)
     return yuyv_from_rgb(picture(covered, INSIDE[shape], WALL, 2.0, rng))
 
 
