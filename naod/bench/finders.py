@@ -7,10 +7,10 @@ from typing import Protocol
 
 from naod.bench.frames import Frame, Sequence
 from naod.bench.peers.hsv import HsvThreshold
-from naod.bench.peers.ours import Ours
-from naod.bench.peers.peer import Peer, Seen
-from naod.perception.learning import KINDS, ModelKind
+from naod.bench.peers.peer import BY_EDGES, Peer, Seen, ours_of
+from naod.perception.learning import KINDS
 
+ITS_EDGES = "box by its edges"
 LOOKED_FOR = 4
 """Frames with the object that may pass before it counts as not found again."""
 
@@ -44,15 +44,15 @@ class PeerFinder:
 
 
 def finders_of(taught: Sequence) -> dict[str, Finder]:
-    """Our kinds of model and an HSV threshold, each taught by the same marked frame."""
-    finders: dict[str, Finder] = {kind: PeerFinder(_ours(taught, kind), taught) for kind in KINDS}
+    """Our kinds of model, its box by edges, and an HSV threshold, taught by one marked frame."""
+    height, width = taught.shown.shape[:2]
+    variants = {kind: kind for kind in KINDS} | {ITS_EDGES: BY_EDGES}
+    finders: dict[str, Finder] = {
+        name: PeerFinder(ours_of(variant, (width, height), taught.shape), taught)
+        for name, variant in variants.items()
+    }
     finders["HSV threshold"] = PeerFinder(HsvThreshold(), taught)
     return finders
-
-
-def _ours(taught: Sequence, kind: ModelKind) -> Peer:
-    height, width = taught.shown.shape[:2]
-    return Ours((width, height), kind=kind, shape=taught.shape)
 
 
 def seen_again(find: Finder, before: Iterable[Frame], after: Iterable[Frame]) -> int | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,13 @@ from naod.bench.peers.peer import STILL, Motion, Seen
 from naod.config import SegmentationConfig
 from naod.finding.find import find_object
 from naod.finding.hue import Colours
-from naod.geometry.camera import nominal_camera
+from naod.geometry.camera import PinholeCamera, nominal_camera
+from naod.perception.blob import Blob, ordered_corners
 from naod.perception.colour_model import Region
 from naod.perception.learning import DEFAULT_KIND, ModelKind, learn_model
 from naod.perception.segmenter import Segmenter
+from naod.pose.contour import outline_px
+from naod.pose.locate import locate
 from naod.pose.objects import ObjectShape
 
 
@@ -28,8 +32,11 @@ class Ours:
         optimiser: str = "exact",
         kind: ModelKind = DEFAULT_KIND,
         shape: ObjectShape | None = None,
+        by_edges: bool = False,
     ) -> None:
+        """by_edges: the box is that of the pose that the picture's edges give."""
         self._size, self._kind, self._shape = size, kind, shape
+        self._by_edges = by_edges
         self._settings = msgspec.structs.replace(SegmentationConfig(), optimiser=optimiser)
         self._camera = nominal_camera("v6", *size)
         self._segmenter: Segmenter | None = None
@@ -53,4 +60,17 @@ class Ours:
             Colours(yuyv, self._segmenter.model),
         )
         corners = None if found is None else found.blob.corners_px
+        if found is not None and self._by_edges and self._shape is not None:
+            corners = _box_by_edges(yuyv, found.blob, self._shape, self._camera)
         return Seen(segmentation.mask, segmentation.scale, corners)
+
+
+def _box_by_edges(
+    yuyv: NDArray[np.uint8], blob: Blob, shape: ObjectShape, camera: PinholeCamera
+) -> NDArray[np.float64]:
+    """The smallest rectangle around the outline of the pose; the blob's where there is none."""
+    pose = locate(yuyv, blob, shape, camera)
+    if pose is None:
+        return blob.corners_px
+    outline = outline_px(shape, pose.T_camera_object, camera).astype(np.float32)
+    return ordered_corners(cv2.boxPoints(cv2.minAreaRect(outline)).astype(np.float64))

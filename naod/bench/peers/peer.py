@@ -13,13 +13,17 @@ from naod.perception.colour_model import Region
 from naod.perception.learning import DEFAULT_KIND, ModelKind
 from naod.pose.objects import ObjectShape
 
+BY_EDGES = "by edges"
+
 OURS: dict[str, str] = {
     "naod": "",
+    "naod, box by its edges": BY_EDGES,
     "mixture of Gaussians, exact": "mixture",
     "one Gaussian, exact": "gaussian",
     "one Gaussian, ICM": "gaussian icm",
 }
-"""By name: kind of model and optimiser where they are not the daemon's own."""
+"""By name: kind of model and optimiser where they are not the daemon's own; BY_EDGES: with the
+box of the pose that the edges in the picture give."""
 
 PEERS: dict[str, str] = {
     "HSV threshold": "hsv",
@@ -85,5 +89,7 @@ def ours_of(variant: str, size: tuple[int, int], shape: ObjectShape | None) -> P
     """Ours with "kind" or "kind optimiser" of OURS."""
     from naod.bench.peers.ours import Ours
 
+    if variant == BY_EDGES:
+        return Ours(size, shape=shape, by_edges=True)
     kind, _, optimiser = variant.partition(" ")
     return Ours(size, optimiser or "exact", cast(ModelKind, kind or DEFAULT_KIND), shape)
