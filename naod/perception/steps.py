@@ -143,13 +143,10 @@ def goes_to(
         begun -= 1
     first = begun + int(ROUNDED_PX / step)
     last = min(begun + int(BEGINNING * mixed_px / step), count - 1)
-    n = last - first + 1
-    if n < PACE_SAMPLES:
+    if last - first + 1 < PACE_SAMPLES:
         return 0.0
-    middle, mean, along, square = 0.5 * (first + last), 0.0, 0.0, 0.0
+    middle, along, square = 0.5 * (first + last), 0.0, 0.0
     for i in range(first, last + 1):
-        mean += _share(shares, scores[i]) / n
-    for i in range(first, last + 1):
-        along += (i - middle) * (_share(shares, scores[i]) - mean)
+        along += (i - middle) * _share(shares, scores[i])
         square += (i - middle) ** 2
     return along / (square * step) * mixed_px

@@ -28,7 +28,7 @@ def seen_outline(
     names: NDArray[np.int64],
 ) -> int:
     """Fill `image` (VERTICES, 3) with u, v, depth and `names` of the pieces; their number."""
-    vertices = np.empty((VERTICES, 4))
+    vertices = np.empty((VERTICES, 3))
     R, t = T[:, :3].copy(), T[:, 3].copy()
     pieces = outline(kind, half_width, half_height, R, t, vertices, names)
     project(R, t, vertices, pieces + 1, image)

@@ -38,7 +38,6 @@ def _rectangle(
         vertices[k, 0] = half_width if k in (1, 2) else -half_width
         vertices[k, 1] = -half_height if k in (2, 3) else half_height
         vertices[k, 2] = 0.0
-        vertices[k, 3] = 0.0
     for k in range(4):
         edges[k] = k
     return 4
@@ -69,7 +68,6 @@ def _cylinder(
             vertices[row, 0] = radius * math.sin(angles[end])
             vertices[row, 1] = high if end == 0 else low
             vertices[row, 2] = radius * math.cos(angles[end])
-            vertices[row, 3] = angles[end]
             edges[row] = TOP if end == 0 else BOTTOM
     edges[ARC], edges[2 * ARC + 1] = RIGHT, LEFT
     vertices[2 * ARC + 2] = vertices[0]
@@ -88,8 +86,8 @@ def outline(
 ) -> int:
     """Fill the outline of a shape at T_camera_object = (R, t); returns the number of pieces.
 
-    Piece k runs from row k to row k + 1 of `vertices` (VERTICES, 4): x, y, z along the object,
-    and the angle about y where the piece is an arc. `edges[k]` is TOP, RIGHT, BOTTOM or LEFT.
+    Piece k runs from row k to row k + 1 of `vertices` (VERTICES, 3), along the object.
+    `edges[k]` is TOP, RIGHT, BOTTOM or LEFT.
     """
     if kind == RECTANGLE:
         return _rectangle(half_width, half_height, vertices, edges)
@@ -109,12 +107,12 @@ def outline_in_camera(
     shape: ObjectShape, T_camera_object: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """The closed outline (n + 1, 3) in the camera's frame, and the edge (n,) of each piece."""
-    vertices = np.empty((VERTICES, 4))
+    vertices = np.empty((VERTICES, 3))
     edges = np.empty(VERTICES, dtype=np.int64)
     kind, half_width, half_height = figures(shape)
     R, t = np.ascontiguousarray(T_camera_object[:3, :3]), T_camera_object[:3, 3].copy()
     pieces = outline(kind, half_width, half_height, R, t, vertices, edges)
-    return vertices[: pieces + 1, :3] @ R.T + t, edges[:pieces].copy()
+    return vertices[: pieces + 1] @ R.T + t, edges[:pieces].copy()
 
 
 def outline_px(

@@ -72,7 +72,7 @@ def compare(
     corners: (n,) of the outline, the nearest to each point when last asked, negative where that is
     not known; they are brought up to date.
     """
-    vertices, image = np.empty((VERTICES, 4)), np.empty((VERTICES, 3))
+    vertices, image = np.empty((VERTICES, 3)), np.empty((VERTICES, 3))
     names, X = np.empty(VERTICES, dtype=np.int64), np.empty(3)
     pieces = outline(kind, half_width, half_height, R, t, vertices, names)
     project(R, t, vertices, pieces + 1, image)

@@ -23,7 +23,7 @@ def project(
     count: int,
     image: NDArray[np.float64],
 ) -> None:
-    """Vertices of an outline, (n, 4), as u, v and depth, (n, 3)."""
+    """Vertices of an outline, (n, 3), as u, v and depth, (n, 3)."""
     for k in range(count):
         x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
         depth = R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2]

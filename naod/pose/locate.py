@@ -75,7 +75,8 @@ def locate(
     coarse = coarse_fit(blob, shape, camera, near)
     if coarse is None:
         return None
-    noise = replace(noise, unsteady_px=unsteady_px(camera, exposure_s))
+    unsteady = math.hypot(noise.unsteady_px, unsteady_px(camera, exposure_s))
+    noise = replace(noise, unsteady_px=unsteady)
     seen = see(yuyv, coarse, blob.grain_px, shape, camera, noise)
     if seen is None or seen.reading.support < SUPPORT_MIN:
         return _on_outline(coarse, blob, _coarse_noise(blob), shape, camera, estimator)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import cv2
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,7 @@ from naod.config import SegmentationConfig
 from naod.finding.find import find_object
 from naod.finding.hue import Colours
 from naod.geometry.camera import PinholeCamera, nominal_camera
-from naod.perception.blob import Blob, ordered_corners
+from naod.perception.blob import Blob, oriented_box
 from naod.perception.colour_model import Region
 from naod.perception.learning import DEFAULT_KIND, ModelKind, learn_model
 from naod.perception.segmenter import Segmenter
@@ -72,5 +71,4 @@ def _box_by_edges(
     pose = locate(yuyv, blob, shape, camera)
     if pose is None:
         return blob.corners_px
-    outline = outline_px(shape, pose.T_camera_object, camera).astype(np.float32)
-    return ordered_corners(cv2.boxPoints(cv2.minAreaRect(outline)).astype(np.float64))
+    return oriented_box(outline_px(shape, pose.T_camera_object, camera))
