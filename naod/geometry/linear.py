@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 
 @njit(cache=True, nogil=True)
 def solve_symmetric(A: NDArray[np.float64], b: NDArray[np.float64], x: NDArray[np.float64]) -> bool:
-    """Solve A x = b by Cholesky; A (n, n) is destroyed. False where A is not positive definite."""
+    """Solve A x = b by Cholesky; False where A is not positive definite.
+
+    A (n, n) is destroyed. x (n,) may be b itself.
+    """
     n = b.size
     for i in range(n):
         for j in range(i + 1):

@@ -22,6 +22,9 @@ from naod.perception.steps import crossing, goes_to, unevenness, width_of
 
 STEP_PX = 0.5
 SAMPLES_MAX = 129
+FEW_SHARES = 5
+"""Mixtures of two colours that are asked for where edges are only looked for."""
+
 GATHERED2 = 0.9
 """Variance that shared chroma and bilinear samples add to a profile along a row, px squared."""
 
@@ -205,9 +208,9 @@ def measure(
     plateaus, scatter = np.empty((3, 3)), np.empty((3, 3))
     curves, pairs = np.empty((count, SHARES)), np.empty((PAIRS_MAX, 3))
     kept = np.zeros((count, _KEPT))
-    few = max(int(plateau_px / step), 2)
+    few, shares = max(int(plateau_px / step), 2), SHARES if exact else FEW_SHARES
     for i in range(count):
-        normal, one, curve = normals[i], found[i], curves[i]
+        normal, one, curve = normals[i], found[i], curves[i, :shares]
         reach = min(reaches[i], (SAMPLES_MAX // 2) * step)
         x, y = places[i, 0] + reach * normal[0], places[i, 1] + reach * normal[1]
         one[SIGMA] = np.inf
@@ -219,7 +222,7 @@ def measure(
         if contrast == 0.0:
             continue
         mixture_scores(plateaus[0], plateaus[1], plateaus[2], curve)
-        half = curve[SHARES // 2]
+        half = curve[shares // 2]
         at, slope = crossing(colours, end, plateaus[0], plateaus[2], half, step, scores)
         if slope == 0.0:
             continue

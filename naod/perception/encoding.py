@@ -54,15 +54,17 @@ def mixture_scores(
     outer colour's light.
     """
     a, b, last = _lights(inner), _lights(outer), scores.size - 1
+    part = 1.0 / last
     wy, wu, wv = direction[0], direction[1], direction[2]
     from_red = 0.299 * wy - 0.168736 * wu + 0.5 * wv
     from_green = 0.587 * wy - 0.331264 * wu - 0.418688 * wv
     from_blue = 0.114 * wy + 0.5 * wu - 0.081312 * wv
     for k in range(last + 1):
-        share = k / last
+        share = k * part
         scores[k] = from_red * level_of(a[0] + share * (b[0] - a[0]))
         scores[k] += from_green * level_of(a[1] + share * (b[1] - a[1]))
         scores[k] += from_blue * level_of(a[2] + share * (b[2] - a[2]))
     first, span = scores[0], scores[last] - scores[0]
+    per_span = 1.0 / span if span > 0.0 else 0.0
     for k in range(last + 1):
-        scores[k] = (scores[k] - first) / span if span > 0.0 else k / last
+        scores[k] = (scores[k] - first) * per_span if span > 0.0 else k * part

@@ -32,9 +32,9 @@ one side of the mixing or the other say nothing of it."""
 
 
 @njit(cache=True, nogil=True)
-def _score(scores: NDArray[np.float64], gap: float, width: float) -> tuple[float, float]:
+def _score(scores: NDArray[np.float64], gap: float, per_width: float) -> tuple[float, float]:
     """Predicted score of a pixel whose middle lies `gap` outside the edge, and its rise per px."""
-    share = 0.5 + gap / width
+    share = 0.5 + gap * per_width
     if share <= 0.0:
         return 0.0, 0.0
     if share >= 1.0:
@@ -42,7 +42,7 @@ def _score(scores: NDArray[np.float64], gap: float, width: float) -> tuple[float
     place = share * (SHARES - 1)
     k = int(place)
     rise = scores[k + 1] - scores[k]
-    return scores[k] + (place - k) * rise, rise * (SHARES - 1) / width
+    return scores[k] + (place - k) * rise, rise * (SHARES - 1) * per_width
 
 
 @njit(cache=True, nogil=True)
@@ -94,19 +94,19 @@ def _improve(
     width: float,
     seeming: float,
     prior: float,
-    step: NDArray[np.float64],
-) -> tuple[float, float]:
-    """Gauss-Newton step of shift and width into `step` (2,); returns the information of both."""
+) -> tuple[float, float, float, float]:
+    """Gauss-Newton step of shift and of width, and the information of both."""
     a11 = a12 = b1 = 0.0
+    per_width = 1.0 / width
     a22, b2 = WIDTH_DAMPING + prior, prior * (seeming - width)
     for k in range(count):
         pair = pairs[k]
         a, b = pair[0] - shift, pair[1] - shift
-        first, first_rise = _score(scores, a, width)
-        second, second_rise = _score(scores, b, width)
+        first, first_rise = _score(scores, a, per_width)
+        second, second_rise = _score(scores, b, per_width)
         gap = pair[2] - 0.5 * (first + second)
         by_shift = -0.5 * (first_rise + second_rise)
-        by_width = -0.5 * (first_rise * a + second_rise * b) / width
+        by_width = -0.5 * (first_rise * a + second_rise * b) * per_width
         a11 += by_shift * by_shift
         a12 += by_shift * by_width
         a22 += by_width * by_width
@@ -114,10 +114,9 @@ def _improve(
         b2 += by_width * gap
     determinant = a11 * a22 - a12 * a12
     if a11 < 1e-6 or determinant < 1e-12:
-        return 0.0, 0.0
-    step[0] = (a22 * b1 - a12 * b2) / determinant
-    step[1] = (a11 * b2 - a12 * b1) / determinant
-    return determinant / a22, determinant / a11 - prior - WIDTH_DAMPING
+        return 0.0, 0.0, 0.0, 0.0
+    further, wider = (a22 * b1 - a12 * b2) / determinant, (a11 * b2 - a12 * b1) / determinant
+    return further, wider, determinant / a22, determinant / a11 - prior - WIDTH_DAMPING
 
 
 @njit(cache=True, nogil=True)
@@ -144,17 +143,18 @@ def place_edge(
     width = min(max(width, WIDTH_MIN_PX), MIXING_MAX_PX)
     across = 0.5 * width + ASIDE_PX
     count = _gather(yuyv, x, y, nx, ny, across, inner, direction, pairs)
-    step = np.zeros(2)
     shift = information = of_width = 0.0
     seeming = width
     for _ in range(STEPS):
-        information, of_width = _improve(scores, pairs, count, shift, width, seeming, prior, step)
+        further, wider, information, of_width = _improve(
+            scores, pairs, count, shift, width, seeming, prior
+        )
         if information == 0.0:
             return 0.0, width, 0.0, 0.0
-        shift += min(max(step[0], -1.0), 1.0)
-        width = min(max(width + min(max(step[1], -1.0), 1.0), WIDTH_MIN_PX), MIXING_MAX_PX)
+        shift += min(max(further, -1.0), 1.0)
+        width = min(max(width + min(max(wider, -1.0), 1.0), WIDTH_MIN_PX), MIXING_MAX_PX)
         if abs(shift) > SHIFT_MAX_PX + 0.25 * width:
             return 0.0, width, 0.0, 0.0
-        if abs(step[0]) < 0.005:
+        if abs(further) < 0.005:
             break
     return shift, width, information, of_width

@@ -60,6 +60,40 @@ def colour_at(
 
 
 @njit(cache=True, nogil=True)
+def _is_within(yuyv: NDArray[np.uint8], x: float, y: float) -> bool:
+    """Whether a place has pixels, and pairs of them, on all sides."""
+    height, width = yuyv.shape[0], yuyv.shape[1]
+    return 1.0 <= x < width - 2.0 and 0.0 <= y < height - 1.0
+
+
+@njit(cache=True, nogil=True)
+def _between(a: int, b: int, c: int, d: int, right: float, down: float) -> float:
+    """Bilinear between two levels of a row and two of the next."""
+    upper, lower = a + right * (b - a), c + right * (d - c)
+    return upper + down * (lower - upper)
+
+
+@njit(cache=True, nogil=True)
+def _colour_within(
+    yuyv: NDArray[np.uint8], x: float, y: float, colours: NDArray[np.float64], k: int
+) -> None:
+    """As `colour_at`, of a place that `_is_within`."""
+    i, j, pair = int(y), int(x), 0.5 * (x - 0.5)
+    n = int(pair)
+    down, right, aside = y - i, x - j, pair - n
+    colours[k, 0] = _between(
+        np.int64(yuyv[i, j, 0]), np.int64(yuyv[i, j + 1, 0]),
+        np.int64(yuyv[i + 1, j, 0]), np.int64(yuyv[i + 1, j + 1, 0]), right, down,
+    )  # fmt: skip
+    for c in range(2):
+        m = 2 * n + c
+        colours[k, 1 + c] = _between(
+            np.int64(yuyv[i, m, 1]), np.int64(yuyv[i, m + 2, 1]),
+            np.int64(yuyv[i + 1, m, 1]), np.int64(yuyv[i + 1, m + 2, 1]), aside, down,
+        )  # fmt: skip
+
+
+@njit(cache=True, nogil=True)
 def profile(
     yuyv: NDArray[np.uint8],
     place: NDArray[np.float64],
@@ -70,11 +104,18 @@ def profile(
     colours: NDArray[np.float64],
 ) -> int:
     """Colours from `reach` inside to `reach` outside; no deeper inside than `depth`."""
-    count = 2 * int(reach / step) + 1
-    for k in range(count):
-        s = max((k - count // 2) * step, -depth)
-        colour_at(yuyv, place[0] + s * normal[0], place[1] + s * normal[1], colours, k)
-    return count
+    half = int(reach / step)
+    x, y, nx, ny = place[0], place[1], normal[0], normal[1]
+    begin, end = max(-half * step, -depth), half * step
+    within = _is_within(yuyv, x + begin * nx, y + begin * ny)
+    within &= _is_within(yuyv, x + end * nx, y + end * ny)
+    for k in range(2 * half + 1):
+        s = max((k - half) * step, -depth)
+        if within:
+            _colour_within(yuyv, x + s * nx, y + s * ny, colours, k)
+        else:
+            colour_at(yuyv, x + s * nx, y + s * ny, colours, k)
+    return 2 * half + 1
 
 
 @njit(cache=True, nogil=True)
@@ -105,8 +146,10 @@ def is_of(
     for k in range(palette.shape[0]):
         giving = _giving(palette[k], SHADING_ELSEWHERE)
         own = min(own, _distance2(inner, palette[k], giving))
+        if own < LIKE**2:
+            return True
         beside = min(beside, _distance2(outer, palette[k], giving))
-    return palette.shape[0] == 0 or own < max(LIKE**2, MORE_LIKE**2 * beside)
+    return palette.shape[0] == 0 or own < MORE_LIKE**2 * beside
 
 
 @njit(cache=True, nogil=True)
@@ -190,15 +233,18 @@ def plateau(
     scatter: NDArray[np.float64],
 ) -> None:
     """Mean of rows first to last - 1, and half their covariance added to `scatter`."""
-    n = last - first
+    share = 1.0 / (last - first)
     for c in range(3):
-        mean[c] = 0.0
+        total = 0.0
         for k in range(first, last):
-            mean[c] += colours[k, c] / n
-    for k in range(first, last):
-        for c in range(3):
-            for d in range(c + 1):
-                scatter[c, d] += 0.5 * (colours[k, c] - mean[c]) * (colours[k, d] - mean[d]) / n
+            total += colours[k, c]
+        mean[c] = total * share
+    for c in range(3):
+        for d in range(c + 1):
+            total = 0.0
+            for k in range(first, last):
+                total += (colours[k, c] - mean[c]) * (colours[k, d] - mean[d])
+            scatter[c, d] += 0.5 * share * total
 
 
 @njit(cache=True, nogil=True)
@@ -213,15 +259,16 @@ def contrast_of(
     `direction` is scaled so that it takes the inner plateau to the outer one in a step of 1.
     `scatter` (3, 3), lower half, is theirs, and is used up.
     """
-    gap = np.empty(3)
     for c in range(3):
-        gap[c] = outer[c] - inner[c]
+        direction[c] = outer[c] - inner[c]
         scatter[c, c] += NOISE_LEVELS**2
         for d in range(c + 1):
             shade_c = inner[c] - (128.0 if c else 0.0)
             scatter[c, d] += SHADING**2 * shade_c * (inner[d] - (128.0 if d else 0.0))
-    solve_symmetric(scatter, gap, direction)
-    contrast2 = direction[0] * gap[0] + direction[1] * gap[1] + direction[2] * gap[2]
+    solve_symmetric(scatter, direction, direction)
+    contrast2 = 0.0
+    for c in range(3):
+        contrast2 += direction[c] * (outer[c] - inner[c])
     if contrast2 < 1e-6:
         return 0.0
     for c in range(3):

@@ -6,8 +6,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.placing import SHARES
-
 SLOPE_MIN = 0.02
 SLOW_PX = 5.0
 """A step that seems to rise over more than this at its middle is asked how far its quarters are."""
@@ -71,7 +69,8 @@ def _rise(
     scores: NDArray[np.float64], count: int, at: float, shares: NDArray[np.float64], step: float
 ) -> float:
     """Px over which light mixes, from where a quarter of it and three quarters are of one side."""
-    lower, upper = shares[SHARES // 4], shares[SHARES - 1 - SHARES // 4]
+    quarter = shares.size // 4
+    lower, upper = shares[quarter], shares[shares.size - 1 - quarter]
     first, last = int(at), int(at) + 1
     while first > 0 and scores[first] > lower:
         first -= 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -13,7 +12,9 @@ from naod.geometry.camera import PinholeCamera
 from naod.perception.blob import Blob
 from naod.pose.around import lonely_share, places_around, seen_outline, visible_area
 from naod.pose.contour import CYLINDER, VERTICES, figures
-from naod.pose.explore import POINTS, READINGS, explore, near_hull, residuals_of
+from naod.pose.convex import convex_points
+from naod.pose.explore import POINTS, READINGS, explore, residuals_of
+from naod.pose.frames import whole
 from naod.pose.guesses import (
     GUESSES_MAX,
     cut_rectangle_guesses,
@@ -83,7 +84,7 @@ def coarse_fit(
     )  # fmt: skip
     if count == 0:
         return None
-    readings = [np.vstack([pose, _LAST_ROW]) for pose in poses[:count]]
+    readings = [whole(pose) for pose in poses[:count]]
     cost, support, area, gaps = (float(value) for value in found)
     return CoarseFit(readings[0], cost, support, area, gaps, readings[1] if count > 1 else None)
 
@@ -96,14 +97,12 @@ def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
     boundary = blob.boundary_px
     if len(boundary) < POINTS_MIN:
         return boundary
-    few = boundary[:: max(1, len(boundary) // (2 * most))]
-    hull = cv2.convexHull(few.astype(np.float32)).reshape(-1, 2).astype(np.float64)
-    return near_hull(few, hull, 1.5 * blob.grain_px, most)
+    every = max(1, len(boundary) // (2 * most))
+    return np.asarray(convex_points(boundary, every, 1.5 * blob.grain_px, most))
 
 
 COST, SUPPORT, AREA, GAPS = range(4)
 FOUND = 4
-_LAST_ROW = np.array([[0.0, 0.0, 0.0, 1.0]])
 _SIDES = ("left", "top", "right", "bottom")
 
 

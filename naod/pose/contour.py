@@ -13,6 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
+from naod.pose.lens import lens_of, to_pixel
 from naod.pose.objects import Cylinder, ObjectShape
 
 CYLINDER, RECTANGLE = 0, 1
@@ -21,6 +22,7 @@ ARC = 24
 
 VERTICES = 2 * ARC + 3
 TOP, RIGHT, BOTTOM, LEFT = range(4)
+DEPTH_LEAST_M = 1e-6
 
 
 def figures(shape: ObjectShape) -> tuple[int, float, float]:
@@ -44,6 +46,16 @@ def _rectangle(
 
 
 @njit(cache=True, nogil=True)
+def _arc(radius: float, y: float, start: float, span: float, vertices: NDArray[np.float64]) -> None:
+    """Vertices (ARC + 1 and more, 3) of part of a rim, each turned on from the one before."""
+    x, z = radius * math.sin(start), radius * math.cos(start)
+    s, c = math.sin(span / ARC), math.cos(span / ARC)
+    for k in range(ARC + 1):
+        vertices[k, 0], vertices[k, 1], vertices[k, 2] = x, y, z
+        x, z = x * c + z * s, z * c - x * s
+
+
+@njit(cache=True, nogil=True)
 def _cylinder(
     radius: float,
     half_height: float,
@@ -60,15 +72,9 @@ def _cylinder(
     low = half_height if within and eye[1] > 0.0 else -half_height
     top_span = 2.0 * (half - math.pi) if eye[1] > half_height else 2.0 * half
     bottom_span = 2.0 * (math.pi - half) if eye[1] < -half_height else -2.0 * half
-    for k in range(ARC + 1):
-        part = k / ARC
-        angles = (towards - half + part * top_span, towards + half + part * bottom_span)
-        for end in range(2):
-            row = k + end * (ARC + 1)
-            vertices[row, 0] = radius * math.sin(angles[end])
-            vertices[row, 1] = high if end == 0 else low
-            vertices[row, 2] = radius * math.cos(angles[end])
-            edges[row] = TOP if end == 0 else BOTTOM
+    _arc(radius, high, towards - half, top_span, vertices[: ARC + 1])
+    _arc(radius, low, towards + half, bottom_span, vertices[ARC + 1 :])
+    edges[: ARC + 1], edges[ARC + 1 : 2 * ARC + 2] = TOP, BOTTOM
     edges[ARC], edges[2 * ARC + 1] = RIGHT, LEFT
     vertices[2 * ARC + 2] = vertices[0]
     return 2 * ARC + 2
@@ -103,6 +109,28 @@ def is_arc(kind: int, edge: int) -> bool:
     return kind == CYLINDER and edge in (TOP, BOTTOM)
 
 
+@njit(cache=True, nogil=True)
+def _seen(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    T: NDArray[np.float64],
+    lens: NDArray[np.float64],
+    pixels: NDArray[np.float64],
+) -> int:
+    """Fill where the outline at T (4, 4) is seen, (VERTICES, 2) px; the number of pieces."""
+    vertices, edges = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
+    R, t = T[:3, :3].copy(), T[:3, 3].copy()
+    pieces = outline(kind, half_width, half_height, R, t, vertices, edges)
+    for k in range(pieces + 1):
+        x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
+        depth = max(R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2], DEPTH_LEAST_M)
+        u = (R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0]) / depth
+        v = (R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1]) / depth
+        pixels[k, 0], pixels[k, 1] = to_pixel(lens, u, v)
+    return pieces
+
+
 def outline_in_camera(
     shape: ObjectShape, T_camera_object: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -119,7 +147,9 @@ def outline_px(
     shape: ObjectShape, T_camera_object: NDArray[np.float64], camera: PinholeCamera
 ) -> NDArray[np.float64]:
     """The closed outline in pixels, (n + 1, 2): to draw it."""
-    return camera.project(outline_in_camera(shape, T_camera_object)[0])
+    pixels = np.empty((VERTICES, 2))
+    pieces = _seen(*figures(shape), np.ascontiguousarray(T_camera_object), lens_of(camera), pixels)
+    return pixels[: pieces + 1]
 
 
 def corners_px(

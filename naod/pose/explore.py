@@ -33,27 +33,6 @@ INDEPENDENT = 12.0
 
 
 @njit(cache=True, nogil=True)
-def near_hull(
-    points: NDArray[np.float64], hull: NDArray[np.float64], within: float, most: int
-) -> NDArray[np.float64]:
-    """About so many of the points (n, 2) that lie no deeper inside their hull (m, 2)."""
-    kept, count, last = np.empty(points.shape), 0, hull.shape[0] - 1
-    for i in range(points.shape[0]):
-        a = hull[last]
-        for k in range(hull.shape[0]):
-            b = hull[k]
-            dx, dy = b[0] - a[0], b[1] - a[1]
-            depth = abs(dx * (points[i, 1] - a[1]) - dy * (points[i, 0] - a[0]))
-            if depth < within * math.hypot(dx, dy):
-                kept[count] = points[i]
-                count += 1
-                break
-            a = b
-    every = max(1, round(count / most))
-    return kept[:count:every].copy()
-
-
-@njit(cache=True, nogil=True)
 def stand_up(kind: int, T: NDArray[np.float64]) -> bool:
     """The same outline with y towards the top of the picture; a can's z to the camera.
 

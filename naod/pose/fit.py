@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from naod.geometry.linear import solve_symmetric
 from naod.pose.contour import CYLINDER, VERTICES, figures, is_arc, outline
 from naod.pose.foot import DEPTH_MIN_M, foot, nearest, project, tangent
+from naod.pose.frames import whole
 from naod.pose.objects import ObjectShape
 from naod.pose.shared import give_way, point_sigma
 
 ITERATIONS = 12
 SETTLED = 1e-5
-LAST_ROW = np.array([[0.0, 0.0, 0.0, 1.0]])
 OUTLIER = 3.0
 """Robust standard deviations at which a point's weight has fallen to a quarter."""
 
@@ -264,7 +264,7 @@ def fit_outline(
         offsets,
     )
     return Fit(
-        np.vstack([T, LAST_ROW]),
+        whole(T),
         residuals * focal_px,
         jacobian * focal_px,
         edges,

@@ -15,6 +15,13 @@ def pose(R: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
     return T
 
 
+def whole(T: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(4, 4) from its upper three rows."""
+    out = np.zeros((4, 4))
+    out[:3], out[3, 3] = T, 1.0
+    return out
+
+
 def facing(axis: NDArray[np.float64], centre: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotation (3, 3) whose y is along `axis` and whose z looks towards the camera."""
     y = axis / math.sqrt(axis @ axis)

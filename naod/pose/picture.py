@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from naod.geometry.camera import PinholeCamera
 from naod.pose.coarse import CoarseFit
 from naod.pose.contour import figures
-from naod.pose.fit import LAST_ROW, Fit
+from naod.pose.fit import Fit
+from naod.pose.frames import whole
 from naod.pose.lens import lens_of
 from naod.pose.noise import COMMON, EdgeNoise
 from naod.pose.objects import ObjectShape
@@ -32,6 +33,13 @@ SUPPORTED, DOUBTFUL = 0.88, 12.0
 larger by so many times the lack."""
 
 
+_Measured = tuple[
+    NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.int64],
+    NDArray[np.float64], NDArray[np.int64], NDArray[np.float64], NDArray[np.float64],
+    NDArray[np.float64],
+]  # fmt: skip
+
+
 @dataclass(frozen=True, slots=True)
 class Seen:
     """The reading that fits best, and the covariance of its pose.
@@ -48,20 +56,6 @@ class Seen:
     gap: float = math.inf
 
 
-class _Scratch:
-    """What is measured at the places of one outline."""
-
-    def __init__(self) -> None:
-        n = PLACES_MAX
-        self.points, self.sigmas = np.empty((n, 2)), np.empty(n)
-        self.looked, self.tally = np.zeros(4, dtype=np.int64), np.zeros(TALLY)
-        self.residuals, self.jacobian = np.empty(n), np.empty((n, 6))
-        self.edges = np.empty(n, dtype=np.int64)
-        self.groups = np.empty(n, dtype=np.int64)
-        self.weights, self.trust = np.empty(n), np.empty(n)
-        self.spreads, self.offsets = np.zeros(4), np.zeros(4)
-
-
 def see(
     yuyv: NDArray[np.uint8],
     coarse: CoarseFit,
@@ -74,54 +68,21 @@ def see(
 
     grain_px: resolution of what the coarse fit was made to.
     """
-    s, lens, what = _Scratch(), lens_of(camera), figures(shape)
     poses, count = np.empty((RIVALS_MAX, 3, 4)), 1
     poses[0] = coarse.T_camera_object[:3]
     if coarse.other is not None:
         poses[1], count = coarse.other[:3], 2
-    count = find_readings(yuyv, *what, poses, count, grain_px, lens, s.tally)
-    if count == 0:
+    gap, support, rise_px, seen, total, measured = _see(
+        yuyv, *figures(shape), poses, count, grain_px, lens_of(camera), noise.figures,
+        noise.fits_px,
+    )  # fmt: skip
+    points, residuals, jacobian, edges, weights, groups, trust, spreads, offsets = measured
+    if not len(points):
         return None
-    n = find_edges(
-        yuyv, *what, poses[0], lens, noise.figures, s.points, s.sigmas, s.groups, s.looked,
-        s.tally, s.residuals, s.jacobian, s.edges, s.weights, s.trust, s.spreads, s.offsets,
-    )  # fmt: skip
-    if n == 0:
-        return None
-    count = add_rivals(*what, poses, count)
-    gap = settle(
-        *what, poses, count, s.points[:n], s.sigmas[:n], s.groups[:n], lens, s.spreads,
-        s.residuals[:n], s.jacobian[:n], s.edges[:n], s.weights[:n], s.trust[:n], s.offsets,
-    )  # fmt: skip
-    return _told(what[0], poses, gap, n, s, noise)
-
-
-def _told(
-    kind: int,
-    poses: NDArray[np.float64],
-    gap: float,
-    n: int,
-    s: _Scratch,
-    noise: EdgeNoise,
-) -> Seen:
-    """What n edge points say of the first of the poses, the second being `gap` behind."""
-    fits_px = noise.fits_px * max(1.0, s.tally[BLUR] / SHARP_RISE_PX)
-    seen, support = _shares(s.residuals[:n], s.edges[:n], s.looked, fits_px)
-    sharpest = mixed_px(min(s.tally[RISE], s.tally[RISE_ASIDE]), SHARP_RISE_PX)
-    figures_of_noise = noise.figures
-    figures_of_noise[COMMON] *= aliased(sharpest)
-    total = stated(
-        kind, poses[0], s.residuals[:n], s.jacobian[:n], s.groups[:n], s.weights[:n],
-        s.trust[:n], s.spreads, s.offsets, figures_of_noise,
-    )  # fmt: skip
-    fit = Fit(
-        np.vstack([poses[0], LAST_ROW]), s.residuals[:n], s.jacobian[:n], s.edges[:n],
-        s.weights[:n], s.groups[:n], s.spreads, s.offsets,
-    )  # fmt: skip
-    total *= (1.0 + DOUBTFUL * max(SUPPORTED - support, 0.0)) ** 2
-    other = np.vstack([poses[1], LAST_ROW]) if math.isfinite(gap) else None
-    reading = Reading(fit, s.points[:n], s.trust[:n], support)
-    return Seen(reading, total, blur_of(float(s.tally[BLUR])), seen, other, gap)
+    T = whole(poses[0])
+    fit = Fit(T, residuals, jacobian, edges, weights, groups, spreads, offsets)
+    other = whole(poses[1]) if math.isfinite(gap) else None
+    return Seen(Reading(fit, points, trust, support), total, blur_of(rise_px), seen, other, gap)
 
 
 def blur_of(rise_px: float) -> float:
@@ -137,13 +98,78 @@ def _shares(
     edges: NDArray[np.int64],
     looked: NDArray[np.int64],
     fits_px: float,
-) -> tuple[NDArray[np.bool_], float]:
-    """Which edges were found for half of what the picture could show; share of all found."""
-    near, seen, total = np.zeros(4, dtype=np.int64), np.zeros(4, dtype=np.bool_), 0
+    seen: NDArray[np.bool_],
+) -> float:
+    """Fill which edges (4,) were found for half of what the picture could show; share of all."""
+    near, total = np.zeros(4, dtype=np.int64), 0
     for i in range(residuals.size):
         if abs(residuals[i]) < fits_px:
             near[edges[i]] += 1
     for k in range(4):
         seen[k] = near[k] > 0 and near[k] >= HALF * looked[k]
         total += near[k]
-    return seen, total / max(looked.sum(), 1)
+    return float(total / max(looked.sum(), 1))
+
+
+@njit(cache=True, nogil=True)
+def _see(
+    yuyv: NDArray[np.uint8],
+    kind: int,
+    half_width: float,
+    half_height: float,
+    poses: NDArray[np.float64],
+    count: int,
+    grain_px: float,
+    lens: NDArray[np.float64],
+    noise: NDArray[np.float64],
+    fits_px: float,
+) -> tuple[float, float, float, NDArray[np.bool_], NDArray[np.float64], _Measured]:
+    """Moves poses (RIVALS_MAX, 3, 4), `count` of them given, to what the edges say, best first.
+
+    Returns by how much worse the second fits, infinite if there is none; what is found of the
+    outline; the width of its blurred steps; whether half of each edge is; the best one's (6, 6);
+    and n points, residuals, Jacobian, edges, weights, groups, trust, spreads and offsets as `Fit`
+    and `Reading` have them, none where too few are seen.
+    """
+    most, gap, support, n = PLACES_MAX, np.inf, 0.0, 0
+    points, sigmas, groups = np.empty((most, 2)), np.empty(most), np.empty(most, dtype=np.int64)
+    residuals, jacobian, edges = np.empty(most), np.empty((most, 6)), np.empty(most, dtype=np.int64)
+    weights, trust, spreads, offsets = np.empty(most), np.empty(most), np.zeros(4), np.zeros(4)
+    looked, tally = np.zeros(4, dtype=np.int64), np.zeros(TALLY)
+    total, seen = np.empty((6, 6)), np.zeros(4, dtype=np.bool_)
+    rivals = find_readings(yuyv, kind, half_width, half_height, poses, count, grain_px, lens, tally)
+    if rivals > 0:
+        n = find_edges(
+            yuyv, kind, half_width, half_height, poses[0], lens, noise, points, sigmas, groups,
+            looked, tally, residuals, jacobian, edges, weights, trust, spreads, offsets,
+        )  # fmt: skip
+    measured = (
+        points[:n], residuals[:n], jacobian[:n], edges[:n], weights[:n], groups[:n], trust[:n],
+        spreads, offsets,
+    )  # fmt: skip
+    if n > 0:
+        rivals = add_rivals(kind, half_width, half_height, poses, rivals)
+        gap = settle(
+            kind, half_width, half_height, poses, rivals, points[:n], sigmas[:n], groups[:n], lens,
+            spreads, residuals[:n], jacobian[:n], edges[:n], weights[:n], trust[:n], offsets,
+        )  # fmt: skip
+        near = fits_px * max(1.0, tally[BLUR] / SHARP_RISE_PX)
+        support = _shares(residuals[:n], edges[:n], looked, near, seen)
+        total[:] = _told(kind, poses[0], tally, measured, noise)
+        total *= (1.0 + DOUBTFUL * max(SUPPORTED - support, 0.0)) ** 2
+    return gap, support, tally[BLUR], seen, total, measured
+
+
+@njit(cache=True, nogil=True)
+def _told(
+    kind: int,
+    T: NDArray[np.float64],
+    tally: NDArray[np.float64],
+    measured: _Measured,
+    noise: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """(6, 6) of the pose (3, 4) that edges give; the more blurred they are, the less aliased."""
+    _, residuals, jacobian, _, weights, groups, trust, spreads, offsets = measured
+    own = noise.copy()
+    own[COMMON] *= aliased(mixed_px(min(tally[RISE], tally[RISE_ASIDE]), SHARP_RISE_PX))
+    return stated(kind, T, residuals, jacobian, groups, weights, trust, spreads, offsets, own)
