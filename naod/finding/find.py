@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from naod.config import SegmentationConfig
 from naod.finding.expectation import agreement
-from naod.finding.groups import groups_of
 from naod.finding.hue import CLIP, NO_OWN, NO_PICTURE, Colours
-from naod.finding.measure import COLOUR, CORE, NO_SHAPE, PIXELS, RING, measure_groups
+from naod.finding.measure import COLOUR, NO_SHAPE, PIXELS
 from naod.finding.parts import parts_of
-from naod.finding.presence import colour_and_shape, plausibility, probability
+from naod.finding.presence import probability, weights_of
 from naod.finding.regions import Regions, cores_of, regions_of
+from naod.finding.scoring import score_groups
 from naod.geometry.camera import PinholeCamera
 from naod.perception.blob import Blob, blob_of, find_blob
 from naod.perception.components import AREA, SUM_X, SUM_Y
@@ -95,14 +95,13 @@ def likeliest(
                 scored, best, odds = other, likely, likely_odds
             if other.surely(likely, likely_odds):
                 break
-    wanted = scored.wanted(best)
-    many = int(np.count_nonzero(wanted))
-    blob = None
-    if many == 1 and scored.regions is regions:
-        blob = _foremost(segmentation, scored, wanted, pixels_min)
+    rows, blob = scored.rows(best), None
+    if len(rows) == 1 and scored.regions is regions:
+        blob = _foremost(segmentation, regions.table[rows[0]], pixels_min)
     if blob is None:
+        wanted = scored.wanted(best)
         blob = blob_of(scored.regions.labels, scored.regions.table, wanted, segmentation.scale)
-    return Candidate(blob, probability(odds), many)
+    return Candidate(blob, probability(odds), len(rows))
 
 
 def finer(regions: Regions, colours: Colours | None) -> Iterator[Regions]:
@@ -112,17 +111,16 @@ def finer(regions: Regions, colours: Colours | None) -> Iterator[Regions]:
         yield parts_of(regions, colours.picture)
 
 
-def _foremost(
-    segmentation: Segmentation, scored: Scored, wanted: NDArray[np.bool_], pixels_min: int
-) -> Blob | None:
-    """The region with most of the colour, which is measured already, if it is the one wanted."""
+def _foremost(segmentation: Segmentation, row: NDArray[np.int64], pixels_min: int) -> Blob | None:
+    """The region with most of the colour, which is measured already, if it is that of a row."""
     blob = find_blob(segmentation, pixels_min)
-    row, grain = scored.regions.table[wanted[1:]][0], segmentation.scale
-    if blob is None or blob.area_px != row[AREA] * grain**2:
+    area, sum_x, sum_y = int(row[AREA]), int(row[SUM_X]), int(row[SUM_Y])
+    grain = segmentation.scale
+    if blob is None or blob.area_px != area * grain**2:
         return None
-    x, y = ((float(row[k]) / float(row[AREA]) + 0.5) * grain - 0.5 for k in (SUM_X, SUM_Y))
-    same = abs(blob.centre_px[0] - x) + abs(blob.centre_px[1] - y) < 1e-6
-    return blob if same else None
+    x, y = blob.centre_px.tolist()
+    gap = abs(x - (sum_x / area + 0.5) * grain + 0.5) + abs(y - (sum_y / area + 0.5) * grain + 0.5)
+    return blob if gap < 1e-6 else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,8 +138,8 @@ class Expected:
 class Scored:
     """Groups of regions that may be the object, and what speaks for each.
 
-    `chosen` and `groups` as `groups_of`, `measures` and `cuts` as `measure_groups`. `offsets`:
-    log-odds (m,) that were not fitted to pictures.
+    `chosen` and `groups` as `groups_of`, `measures` and `cuts` as `measure_groups`. `fitted`:
+    log-odds (m,) by the measures, `offsets`: to those, which were not fitted to pictures.
     """
 
     regions: Regions
@@ -149,15 +147,21 @@ class Scored:
     groups: NDArray[np.int64]
     measures: NDArray[np.float64]
     cuts: NDArray[np.int64]
+    fitted: NDArray[np.float64]
     offsets: NDArray[np.float64]
     known: bool
 
     def wanted(self, group: int) -> NDArray[np.bool_]:
         """Whether each label is of a group."""
         out = np.zeros(len(self.regions.table) + 1, dtype=np.bool_)
-        for n, row in enumerate(self.chosen):
-            out[1 + row] = bool(self.groups[group] >> n & 1)
+        for row in self.rows(group):
+            out[1 + row] = True
         return out
+
+    def rows(self, group: int) -> list[int]:
+        """Rows of the regions' table that make up a group."""
+        members = int(self.groups[group])
+        return [row for n, row in enumerate(self.chosen.tolist()) if members >> n & 1]
 
     def surely(self, group: int, odds: float) -> bool:
         """Whether a group with such log-odds is the object and nothing else."""
@@ -169,7 +173,7 @@ class Scored:
         Without a shape, of those that are likely the one with most pixels: a large object has
         shades in it that a small thing beside it has not.
         """
-        odds = colour_and_shape(self.measures, self.cuts, self.known) + self.offsets
+        odds = self.fitted + self.offsets
         told = odds
         if not self.known:
             likely = odds >= min(float(odds.max()), LIKELY_ODDS)
@@ -186,33 +190,30 @@ def scored_groups(
     known = shape is not None and camera is not None
     if not len(regions.table):
         return None
-    chosen, groups = groups_of(regions.table, regions.told, pixels_min, known, regions.colours)
-    if not len(groups):
-        return None
-    sizes = _figures(shape if known else None)
-    colours = expected.colours
-    measures, cuts = measure_groups(
+    colours, focal_px = expected.colours, 0.0
+    if shape is not None and camera is not None:
+        focal_px = math.sqrt(camera.fx * camera.fy) / grain
+    chosen, groups, measures, cuts, odds, offsets = score_groups(
         regions.labels,
         regions.table,
+        regions.told,
         regions.differences,
-        chosen,
-        groups,
-        sizes,
+        regions.colours,
+        pixels_min,
+        _figures(shape if known else None),
         expected.blur_px / grain,
         colours.picture if colours else NO_PICTURE,
         colours.own if colours else NO_OWN,
+        colours.peak if colours else CLIP,
+        regions.around_max,
+        focal_px,
+        weights_of(known),
     )
-    if colours is not None:
-        # a model that is never quite sure says no less of what it is as sure of as it can be
-        surer = CLIP / colours.peak
-        measures[:, [COLOUR, CORE]] = np.minimum(measures[:, [COLOUR, CORE]] * surer, CLIP)
-    measures[:, RING] = np.minimum(measures[:, RING], regions.around_max)
-    offsets = np.zeros(len(groups))
-    if shape is not None and camera is not None:
-        offsets += plausibility(measures, math.sqrt(camera.fx * camera.fy) / grain)
-        if expected.prior is not None:
-            offsets += agreement(measures, cuts, grain, shape, camera, expected.prior)
-    return Scored(regions, chosen, groups, measures, cuts, offsets, known)
+    if not len(groups):
+        return None
+    if shape is not None and camera is not None and expected.prior is not None:
+        offsets += agreement(measures, cuts, grain, shape, camera, expected.prior)
+    return Scored(regions, chosen, groups, measures, cuts, odds, offsets, known)
 
 
 def _figures(shape: ObjectShape | None) -> tuple[int, float, float]:

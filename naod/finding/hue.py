@@ -54,18 +54,7 @@ class Colours:
     @property
     def own(self) -> Own:
         """An object of many colours has hardly a hue: its variance is large."""
-        y, u, v = self.model.mean[0], self.model.mean[1] - 128.0, self.model.mean[2] - 128.0
-        length2 = max(u * u + v * v, 1.0)
-        (yy, yu, yv), (_, uu, uv), (_, _, vv) = self.model.covariance
-        # noise of single pixels is no other colour
-        noise = STD_FLOOR**2
-        across = (v * v * uu - 2.0 * u * v * uv + u * u * vv) / length2
-        outwards = (u * u * uu + 2.0 * u * v * uv + v * v * vv) / length2
-        both = (u * yu + v * yv) / length2
-        bright = max(y, 1.0)
-        tone = max(outwards - noise, 0.0) / length2 + max(yy - noise, 0.0) / bright**2
-        tone = max(tone - 2.0 * both / bright, 0.0)
-        return y, u, v, max(across - noise, 0.0) / length2, tone
+        return _own(self.model.mean, self.model.covariance)
 
     @property
     def peak(self) -> float:
@@ -80,6 +69,23 @@ class Colours:
         raw: NDArray[np.uint8] = np.ascontiguousarray(self.yuyv).view()
         raw.flags.writeable = False
         return raw
+
+
+@lru_cache(maxsize=8)
+def _own(mean: Triple, covariance: tuple[Triple, Triple, Triple]) -> Own:
+    """Of a model; asked for several times a picture."""
+    y, u, v = mean[0], mean[1] - 128.0, mean[2] - 128.0
+    length2 = max(u * u + v * v, 1.0)
+    (yy, yu, yv), (_, uu, uv), (_, _, vv) = covariance
+    # noise of single pixels is no other colour
+    noise = STD_FLOOR**2
+    across = (v * v * uu - 2.0 * u * v * uv + u * u * vv) / length2
+    outwards = (u * u * uu + 2.0 * u * v * uv + v * v * vv) / length2
+    both = (u * yu + v * yv) / length2
+    bright = max(y, 1.0)
+    tone = max(outwards - noise, 0.0) / length2 + max(yy - noise, 0.0) / bright**2
+    tone = max(tone - 2.0 * both / bright, 0.0)
+    return y, u, v, max(across - noise, 0.0) / length2, tone
 
 
 @lru_cache(maxsize=8)

@@ -135,15 +135,28 @@ def terms(measures: Floats) -> Floats:
     return out
 
 
-def colour_and_shape(measures: Floats, cuts: NDArray[np.int64], known: bool) -> Floats:
-    """Fitted log-odds (m,) of groups with measures (m, MEASURES) and borders that cut them (m,)."""
+@cache
+def weights_of(known: bool) -> Floats:
+    """(2, len(TERMS)) for `log_odds`, of a known shape or of none."""
     weights = fitted_weights()
-    rows = terms(measures)
-    if not known:
-        return np.asarray(rows @ weights["unknown"] + CHOSEN)
-    if not cuts.any():
-        return np.asarray(rows @ weights["whole"])
-    return np.where(cuts > 0, rows @ weights["cut"], rows @ weights["whole"])
+    if known:
+        return np.array([weights["whole"], weights["cut"]])
+    chosen = weights["unknown"].copy()
+    chosen[TERMS.index("constant")] += CHOSEN
+    return np.array([chosen, chosen])
+
+
+@njit(cache=True, nogil=True)
+def log_odds(measures: Floats, cuts: NDArray[np.int64], weights: Floats) -> Floats:
+    """Fitted log-odds (m,) of groups with measures (m, MEASURES) and borders that cut them (m,).
+
+    weights: (2, len(TERMS)), of what is wholly in the picture and of what is cut.
+    """
+    out, rows = np.zeros(measures.shape[0]), terms(measures)
+    for k in range(out.size):
+        for n in range(_TERMS):
+            out[k] += rows[k, n] * weights[1 if cuts[k] > 0 else 0, n]
+    return out
 
 
 def distance_m(measures: Floats, focal_px: float) -> Floats:
