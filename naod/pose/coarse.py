@@ -137,7 +137,7 @@ def _guess(
     kind: int,
     half_width: float,
     half_height: float,
-    points: NDArray[np.float64],
+    boundary: NDArray[np.float64],
     box: NDArray[np.float64],
     grain: float,
     sides: NDArray[np.bool_],
@@ -145,12 +145,15 @@ def _guess(
     guesses: NDArray[np.float64],
 ) -> int:
     corners, four, cut = np.empty((4, 2)), np.empty((4, 2)), np.zeros(4, dtype=np.bool_)
+    seen = np.empty((4, 2))
     from_pixels(lens, box, corners)
     _cut(box, grain, sides, lens, cut)
     if kind == CYLINDER:
         return cylinder_guesses(half_width, half_height, corners, cut, guesses)
     count = 0
-    if not sides.any() and quadrilateral(points, corners, four):
+    # corners are single points: all of the boundary is asked for them
+    if not sides.any() and quadrilateral(boundary, box, seen):
+        from_pixels(lens, seen, four)
         count = rectangle_guesses(half_width, half_height, four, guesses)
     if count == 0:
         count = cut_rectangle_guesses(half_width, half_height, corners, cut, guesses)
@@ -220,7 +223,7 @@ def _fit(
             break
         start = 1 if hinted else 0
         start += _guess(
-            kind, half_width, half_height, points, box, grain_px, sides, lens, guesses[start:]
+            kind, half_width, half_height, boundary, box, grain_px, sides, lens, guesses[start:]
         )
         count = explore(kind, half_width, half_height, points, guesses, start, grain, poses)
     return count

@@ -8,6 +8,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+"""Its multiples are spread evenly, and never in step with anything."""
+
 TIE = 1e-7
 """Of y, added to x: points above each other are in order, others hardly moved."""
 
@@ -35,6 +38,20 @@ def hull_of(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @njit(cache=True, nogil=True)
+def thinned(points: NDArray[np.float64], every: int) -> NDArray[np.float64]:
+    """One point of every so many (n, 2), each from another place among them.
+
+    A boundary goes through rows, from its left side to its right: every second point would be one
+    side alone.
+    """
+    count = points.shape[0] // every
+    kept = np.empty((count, 2))
+    for k in range(count):
+        kept[k] = points[every * k + int(k * GOLDEN % 1.0 * every)]
+    return kept
+
+
+@njit(cache=True, nogil=True)
 def convex_points(
     points: NDArray[np.float64], every: int, within: float, most: int
 ) -> NDArray[np.float64]:
@@ -42,7 +59,7 @@ def convex_points(
 
     every: only each so many-th is looked at.
     """
-    few = points[::every].copy()
+    few = thinned(points, every)
     hull = hull_of(few)
     kept, count, last = np.empty(few.shape), 0, hull.shape[0] - 1
     for i in range(few.shape[0]):
@@ -56,4 +73,4 @@ def convex_points(
                 count += 1
                 break
             a = b
-    return kept[: count : max(1, round(count / most))].copy()
+    return thinned(kept[:count], max(1, round(count / most)))

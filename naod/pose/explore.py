@@ -9,15 +9,16 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.pose.contour import CYLINDER
+from naod.pose.convex import thinned
 from naod.pose.fit import compare, descend
 from naod.pose.guesses import face
 
 READINGS = 2
 """A tilt towards the viewer and one away: more readings than these do not differ."""
 
-POINTS, FEW_POINTS = 48, 24
-STEPS, FEW_STEPS = 6, 4
-SETTLED = 1e-3
+POINTS, FEW_POINTS = 40, 16
+STEPS, FEW_STEPS = 12, 4
+SETTLED = 4e-3
 CUT_GRAINS = 4.0
 DISTINCT_RAD = 0.15
 HOPELESS, HOPELESS_GRAINS2 = 4.0, 0.1
@@ -139,7 +140,7 @@ def explore(
     guesses: (count, 3, 4) and more. grain: resolution of the points. A few of them for a few steps
     decide which guesses are followed to the end.
     """
-    few, costs = points[:: max(1, points.shape[0] // FEW_POINTS)].copy(), np.empty(count)
+    few, costs = thinned(points, max(1, points.shape[0] // FEW_POINTS)), np.empty(count)
     for k in range(count):
         costs[k] = _descended(kind, half_width, half_height, guesses[k], few, grain, FEW_STEPS)
     order, ends, found = np.argsort(costs), np.empty(READINGS), 0

@@ -23,6 +23,10 @@ from naod.pose.shared import give_way, point_sigma
 
 ITERATIONS = 12
 SETTLED = 1e-5
+TO_AND_FRO = 0.5
+"""A turn that takes back so much of the one before has gone too far: where a can's rims change over
+at level, whole steps would go to and fro."""
+
 OUTLIER = 3.0
 """Robust standard deviations at which a point's weight has fallen to a quarter."""
 
@@ -201,7 +205,8 @@ def descend(
     for those of the edge each is nearest to. spreads (4,): standard deviations of the groups'
     offsets, on that plane, 0 for none; offsets (4,): what they turn out to be.
     """
-    A, b, step = np.empty((6, 6)), np.empty(6), np.empty(6)
+    A, b, step, before = np.empty((6, 6)), np.empty(6), np.empty(6), np.zeros(3)
+    share = 1.0
     corners = np.full(points.shape[0], -1)
     R, t = T[:, :3].copy(), T[:, 3].copy()
     offsets[:] = 0.0
@@ -216,11 +221,18 @@ def descend(
         # no further at once than the distance to the object allows
         size = math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2) / (0.3 * abs(t[2]))
         turn = math.sqrt(step[3] ** 2 + step[4] ** 2 + step[5] ** 2) / 0.35
-        step /= max(1.0, size, turn)
+        along = square = 0.0
+        for k in range(3):
+            along += step[3 + k] * before[k]
+            square += before[k] * before[k]
+            before[k] = step[3 + k]
+        if kind == CYLINDER and along < -TO_AND_FRO * square:
+            share *= 0.5
+        step *= share / max(1.0, size, turn)
         t += step[:3]
         t[2] = max(t[2], 2.0 * DEPTH_MIN_M)
         _turn(R, step[3], step[4], step[5])
-        if size < settled and turn < 10.0 * settled:
+        if share * max(size, 0.1 * turn) < settled:
             break
     compare(kind, half_width, half_height, R, t, points, corners, residuals, jacobian, edges)
     robust_weights(residuals, groups, offsets, floor, weights)

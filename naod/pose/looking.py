@@ -29,7 +29,7 @@ from its colour."""
 WIDE_PLATEAU = 0.3
 """Of the way looked outwards or inwards, what the colour of a side is taken from."""
 
-WIDE_SAMPLES = 20
+WIDE_SAMPLES = 16
 STEP_PX = 0.5
 SLOPE_SAMPLES = 5.0
 """Over which a step's slope is taken: it seems no narrower."""

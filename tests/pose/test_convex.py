@@ -1,9 +1,10 @@
-"""The convex part of a boundary, against OpenCV's hull."""
+"""The convex part of a boundary, against OpenCV's hull, and fewer of its points."""
 
 import cv2
 import numpy as np
 
-from naod.pose.convex import convex_points, hull_of
+from naod.perception.blob import blob_of_mask
+from naod.pose.convex import convex_points, hull_of, thinned
 
 
 def area(corners):
@@ -38,3 +39,23 @@ def test_dents_and_holes_are_left_out():
     assert np.all(np.linalg.norm(kept, axis=1) > 40.0)
     few = convex_points(np.concatenate([dented, hole]), 1, 1.5, 40)
     assert 30 <= len(few) <= 50
+
+
+def test_thinning_leaves_no_side_out():
+    # as a mask's boundary comes: each row's ends in turn, or those of two parts of a row
+    for period in (2, 3, 4):
+        points = np.stack([np.arange(600) % period, np.arange(600)], axis=1).astype(float)
+        for every in range(1, 7):
+            kept = thinned(points, every)
+            assert len(kept) == 600 // every
+            shares = np.bincount(kept[:, 0].astype(int), minlength=period) / len(kept)
+            assert shares.min() > 0.6 / period
+            assert np.all(np.diff(kept[:, 1]) > 0)
+
+
+def test_all_sides_of_a_box_are_among_its_points():
+    mask = np.zeros((120, 160), dtype=np.uint8)
+    mask[35:59, 66:101] = 1
+    points = convex_points(blob_of_mask(mask).boundary_px, 1, 1.5, 48)
+    left, right = (np.count_nonzero(points[:, 0] == x) for x in (65.5, 100.5))
+    assert min(left, right) > 0.5 * max(left, right)
