@@ -104,10 +104,11 @@ def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
 COST, SUPPORT, AREA, GAPS = range(4)
 FOUND = 4
 _SIDES = ("left", "top", "right", "bottom")
+_WHOLE = np.zeros(4, dtype=np.bool_)
 
 
 def _sides(blob: Blob) -> NDArray[np.bool_]:
-    return np.array([side in blob.clipped for side in _SIDES])
+    return np.array([side in blob.clipped for side in _SIDES]) if blob.clipped else _WHOLE
 
 
 @njit(cache=True, nogil=True)

@@ -110,7 +110,7 @@ def is_arc(kind: int, edge: int) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _seen(
+def pixels_of(
     kind: int,
     half_width: float,
     half_height: float,
@@ -118,9 +118,9 @@ def _seen(
     lens: NDArray[np.float64],
     pixels: NDArray[np.float64],
 ) -> int:
-    """Fill where the outline at T (4, 4) is seen, (VERTICES, 2) px; the number of pieces."""
+    """Fill where the outline at T (3, 4) is seen, (VERTICES, 2) px; the number of pieces."""
     vertices, edges = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
-    R, t = T[:3, :3].copy(), T[:3, 3].copy()
+    R, t = T[:, :3].copy(), T[:, 3].copy()
     pieces = outline(kind, half_width, half_height, R, t, vertices, edges)
     for k in range(pieces + 1):
         x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
@@ -148,7 +148,9 @@ def outline_px(
 ) -> NDArray[np.float64]:
     """The closed outline in pixels, (n + 1, 2): to draw it."""
     pixels = np.empty((VERTICES, 2))
-    pieces = _seen(*figures(shape), np.ascontiguousarray(T_camera_object), lens_of(camera), pixels)
+    pieces = pixels_of(
+        *figures(shape), np.ascontiguousarray(T_camera_object[:3]), lens_of(camera), pixels
+    )
     return pixels[: pieces + 1]
 
 
@@ -156,7 +158,14 @@ def corners_px(
     shape: ObjectShape, T_camera_object: NDArray[np.float64], camera: PinholeCamera
 ) -> NDArray[np.float64]:
     """Ends of the two sides of the outline, (4, 2): top left, right, bottom right, left."""
-    points = outline_px(shape, T_camera_object, camera)
-    if isinstance(shape, Cylinder):
-        return points[[0, ARC, ARC + 1, 2 * ARC + 1]]
-    return points[:4]
+    points, corners = outline_px(shape, T_camera_object, camera), np.empty((4, 2))
+    take_corners(figures(shape)[0], points, corners)
+    return corners
+
+
+@njit(cache=True, nogil=True)
+def take_corners(kind: int, pixels: NDArray[np.float64], corners: NDArray[np.float64]) -> None:
+    """Fill (4, 2) with the ends of both sides, top left first, of an outline (n, 2)."""
+    apart = ARC if kind == CYLINDER else 1
+    corners[0], corners[1] = pixels[0], pixels[apart]
+    corners[2], corners[3] = pixels[apart + 1], pixels[2 * apart + 1]

@@ -82,7 +82,10 @@ def locate(
         return _on_outline(coarse, blob, _coarse_noise(blob), shape, camera, estimator)
     total = _with_doubt(seen.covariance, seen.reading, seen.other, seen.gap / noise.per_point)
     edges = tuple(edge for edge, is_seen in zip(EDGES, seen.edges_seen, strict=True) if is_seen)
-    return _pose(seen.reading, total, shape, camera, estimator, blob.clipped, edges, seen.blur_px)
+    return _pose(
+        seen.reading, total, seen.corners_px, shape, camera, estimator, blob.clipped, edges,
+        seen.blur_px,
+    )  # fmt: skip
 
 
 def unsteady_px(camera: PinholeCamera, exposure_s: float) -> float:
@@ -140,7 +143,8 @@ def _on_outline(
             total = _with_doubt(total, best, reading.fit.T_camera_object, gap)
     near = np.bincount(best.fit.edges[np.abs(best.fit.residuals) < noise.fits_px], minlength=4)
     edges = tuple(edge for edge, count in zip(EDGES, near, strict=True) if count > 0)
-    return _pose(best, total, shape, camera, estimator, blob.clipped, edges, 0.0)
+    corners = corners_px(shape, best.fit.T_camera_object, camera)
+    return _pose(best, total, corners, shape, camera, estimator, blob.clipped, edges, 0.0)
 
 
 def _starts(coarse: CoarseFit, shape: ObjectShape) -> list[NDArray[np.float64]]:
@@ -167,6 +171,7 @@ def _gap(best: Reading, other: Reading) -> float:
 def _pose(
     reading: Reading,
     total: NDArray[np.float64],
+    corners: NDArray[np.float64],
     shape: ObjectShape,
     camera: PinholeCamera,
     estimator: Estimator,
@@ -175,7 +180,6 @@ def _pose(
     blur_px: float,
 ) -> ObjectPose | None:
     T = reading.fit.T_camera_object
-    corners = corners_px(shape, T, camera)
     if estimator == "paper":
         printed = paper_pose(reading, shape, camera)
         if printed is None:

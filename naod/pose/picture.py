@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
 from naod.pose.coarse import CoarseFit
-from naod.pose.contour import figures
+from naod.pose.contour import VERTICES, figures, pixels_of, take_corners
 from naod.pose.fit import Fit
 from naod.pose.frames import whole
 from naod.pose.lens import lens_of
@@ -42,7 +42,7 @@ _Measured = tuple[
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """The reading that fits best, and the covariance of its pose.
+    """The reading that fits best, the covariance of its pose and where its corners are.
 
     `other`: (4, 4) a second reading and `gap`: by how much worse it fits, in squared deviations.
     `blur_px`: as `ObjectPose` has it. `edges_seen`: (4,) whether half of each edge was found.
@@ -50,6 +50,7 @@ class Seen:
 
     reading: Reading
     covariance: NDArray[np.float64]
+    corners_px: NDArray[np.float64]
     blur_px: float
     edges_seen: NDArray[np.bool_]
     other: NDArray[np.float64] | None = None
@@ -72,7 +73,7 @@ def see(
     poses[0] = coarse.T_camera_object[:3]
     if coarse.other is not None:
         poses[1], count = coarse.other[:3], 2
-    gap, support, rise_px, seen, total, measured = _see(
+    gap, support, rise_px, seen, total, corners, measured = _see(
         yuyv, *figures(shape), poses, count, grain_px, lens_of(camera), noise.figures,
         noise.fits_px,
     )  # fmt: skip
@@ -82,7 +83,8 @@ def see(
     T = whole(poses[0])
     fit = Fit(T, residuals, jacobian, edges, weights, groups, spreads, offsets)
     other = whole(poses[1]) if math.isfinite(gap) else None
-    return Seen(Reading(fit, points, trust, support), total, blur_of(rise_px), seen, other, gap)
+    reading = Reading(fit, points, trust, support)
+    return Seen(reading, total, corners, blur_of(rise_px), seen, other, gap)
 
 
 def blur_of(rise_px: float) -> float:
@@ -123,13 +125,15 @@ def _see(
     lens: NDArray[np.float64],
     noise: NDArray[np.float64],
     fits_px: float,
-) -> tuple[float, float, float, NDArray[np.bool_], NDArray[np.float64], _Measured]:
+) -> tuple[
+    float, float, float, NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64], _Measured
+]:
     """Moves poses (RIVALS_MAX, 3, 4), `count` of them given, to what the edges say, best first.
 
     Returns by how much worse the second fits, infinite if there is none; what is found of the
-    outline; the width of its blurred steps; whether half of each edge is; the best one's (6, 6);
-    and n points, residuals, Jacobian, edges, weights, groups, trust, spreads and offsets as `Fit`
-    and `Reading` have them, none where too few are seen.
+    outline; the width of its blurred steps; whether half of each edge is; the best one's
+    covariance and corners (4, 2) px; and n points, residuals, Jacobian, edges, weights, groups,
+    trust, spreads and offsets as `Fit` and `Reading` have them, none where too few are seen.
     """
     most, gap, support, n = PLACES_MAX, np.inf, 0.0, 0
     points, sigmas, groups = np.empty((most, 2)), np.empty(most), np.empty(most, dtype=np.int64)
@@ -137,6 +141,7 @@ def _see(
     weights, trust, spreads, offsets = np.empty(most), np.empty(most), np.zeros(4), np.zeros(4)
     looked, tally = np.zeros(4, dtype=np.int64), np.zeros(TALLY)
     total, seen = np.empty((6, 6)), np.zeros(4, dtype=np.bool_)
+    pixels, corners = np.empty((VERTICES, 2)), np.empty((4, 2))
     rivals = find_readings(yuyv, kind, half_width, half_height, poses, count, grain_px, lens, tally)
     if rivals > 0:
         n = find_edges(
@@ -156,8 +161,10 @@ def _see(
         near = fits_px * max(1.0, tally[BLUR] / SHARP_RISE_PX)
         support = _shares(residuals[:n], edges[:n], looked, near, seen)
         total[:] = _told(kind, poses[0], tally, measured, noise)
+        pixels_of(kind, half_width, half_height, poses[0], lens, pixels)
+        take_corners(kind, pixels, corners)
         total *= (1.0 + DOUBTFUL * max(SUPPORTED - support, 0.0)) ** 2
-    return gap, support, tally[BLUR], seen, total, measured
+    return gap, support, tally[BLUR], seen, total, corners, measured
 
 
 @njit(cache=True, nogil=True)
