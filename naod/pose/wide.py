@@ -15,7 +15,7 @@ from naod.pose.looking import WIDE, look
 from naod.pose.refine import POINTS_MIN
 from naod.pose.tally import LOOKED, RISE, RISE_ASIDE, SPAN, TALLY
 
-WIDE_PLACES = 40
+WIDE_PLACES = 48
 WIDE_GRAINS, WIDE_PX = 2.5, 4.0
 WIDE_LOOKS = 2
 SEEN_WHOLE, REACH_RISES = 0.8, 1.2
