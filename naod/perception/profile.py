@@ -38,6 +38,25 @@ STILL_RISING = 1.04
 
 
 @njit(cache=True, nogil=True)
+def _between(
+    yuyv: NDArray[np.uint8],
+    rows: tuple[int, int],
+    columns: tuple[int, int],
+    channel: int,
+    down: float,
+    right: float,
+) -> float:
+    """Bilinear between two rows and two columns."""
+    i, below = rows
+    j, beside = columns
+    # differences of levels are whole numbers, which become real ones once
+    first, third = np.int64(yuyv[i, j, channel]), np.int64(yuyv[below, j, channel])
+    upper = first + right * (np.int64(yuyv[i, beside, channel]) - first)
+    lower = third + right * (np.int64(yuyv[below, beside, channel]) - third)
+    return upper + down * (lower - upper)
+
+
+@njit(cache=True, nogil=True)
 def colour_at(
     yuyv: NDArray[np.uint8], x: float, y: float, colours: NDArray[np.float64], k: int
 ) -> None:
@@ -45,18 +64,13 @@ def colour_at(
     height, width = yuyv.shape[0], yuyv.shape[1]
     y, x = min(max(y, 0.0), height - 1.0), min(max(x, 0.0), width - 1.0)
     i, j = min(int(y), max(height - 2, 0)), min(int(x), max(width - 2, 0))
-    below, beside = min(i + 1, height - 1), min(j + 1, width - 1)
-    a, b = y - i, x - j
-    upper = (1.0 - b) * yuyv[i, j, 0] + b * yuyv[i, beside, 0]
-    lower = (1.0 - b) * yuyv[below, j, 0] + b * yuyv[below, beside, 0]
-    colours[k, 0] = (1.0 - a) * upper + a * lower
     pair = min(max(0.5 * (x - 0.5), 0.0), width // 2 - 1.0)
-    j = min(int(pair), max(width // 2 - 2, 0))
-    b, j, beside = pair - j, 2 * j, 2 * min(j + 1, width // 2 - 1)
-    for c in range(2):
-        upper = (1.0 - b) * yuyv[i, j + c, 1] + b * yuyv[i, beside + c, 1]
-        lower = (1.0 - b) * yuyv[below, j + c, 1] + b * yuyv[below, beside + c, 1]
-        colours[k, 1 + c] = (1.0 - a) * upper + a * lower
+    n = min(int(pair), max(width // 2 - 2, 0))
+    rows = i, min(i + 1, height - 1)
+    colours[k, 0] = _between(yuyv, rows, (j, min(j + 1, width - 1)), 0, y - i, x - j)
+    u, v = 2 * n, 2 * min(n + 1, width // 2 - 1)
+    colours[k, 1] = _between(yuyv, rows, (u, v), 1, y - i, pair - n)
+    colours[k, 2] = _between(yuyv, rows, (u + 1, v + 1), 1, y - i, pair - n)
 
 
 @njit(cache=True, nogil=True)
@@ -67,30 +81,16 @@ def _is_within(yuyv: NDArray[np.uint8], x: float, y: float) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _between(a: int, b: int, c: int, d: int, right: float, down: float) -> float:
-    """Bilinear between two levels of a row and two of the next."""
-    upper, lower = a + right * (b - a), c + right * (d - c)
-    return upper + down * (lower - upper)
-
-
-@njit(cache=True, nogil=True)
 def _colour_within(
     yuyv: NDArray[np.uint8], x: float, y: float, colours: NDArray[np.float64], k: int
 ) -> None:
-    """As `colour_at`, of a place that `_is_within`."""
+    """As `colour_at`, of a place that `_is_within`: most are, and take a third less time."""
     i, j, pair = int(y), int(x), 0.5 * (x - 0.5)
     n = int(pair)
-    down, right, aside = y - i, x - j, pair - n
-    colours[k, 0] = _between(
-        np.int64(yuyv[i, j, 0]), np.int64(yuyv[i, j + 1, 0]),
-        np.int64(yuyv[i + 1, j, 0]), np.int64(yuyv[i + 1, j + 1, 0]), right, down,
-    )  # fmt: skip
-    for c in range(2):
-        m = 2 * n + c
-        colours[k, 1 + c] = _between(
-            np.int64(yuyv[i, m, 1]), np.int64(yuyv[i, m + 2, 1]),
-            np.int64(yuyv[i + 1, m, 1]), np.int64(yuyv[i + 1, m + 2, 1]), aside, down,
-        )  # fmt: skip
+    u = 2 * n
+    colours[k, 0] = _between(yuyv, (i, i + 1), (j, j + 1), 0, y - i, x - j)
+    colours[k, 1] = _between(yuyv, (i, i + 1), (u, u + 2), 1, y - i, pair - n)
+    colours[k, 2] = _between(yuyv, (i, i + 1), (u + 1, u + 3), 1, y - i, pair - n)
 
 
 @njit(cache=True, nogil=True)

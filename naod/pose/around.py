@@ -8,31 +8,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.pose.contour import VERTICES, outline
-from naod.pose.foot import project
+from naod.pose.contour import VERTICES
 from naod.pose.lens import HEIGHT, WIDTH, focal, to_pixel
 
 CORNER_PX = 2.0
 """Near a corner there are two edges at once."""
 
 PLACES_MIN = 12
-
-
-@njit(cache=True, nogil=True)
-def seen_outline(
-    kind: int,
-    half_width: float,
-    half_height: float,
-    T: NDArray[np.float64],
-    image: NDArray[np.float64],
-    names: NDArray[np.int64],
-) -> int:
-    """Fill `image` (VERTICES, 3) with u, v, depth and `names` of the pieces; their number."""
-    vertices = np.empty((VERTICES, 3))
-    R, t = T[:, :3].copy(), T[:, 3].copy()
-    pieces = outline(kind, half_width, half_height, R, t, vertices, names)
-    project(R, t, vertices, pieces + 1, image)
-    return pieces
 
 
 @njit(cache=True, nogil=True)

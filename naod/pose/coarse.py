@@ -9,12 +9,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
+from naod.geometry.transforms import transform
 from naod.perception.blob import Blob
-from naod.pose.around import lonely_share, places_around, seen_outline, visible_area
-from naod.pose.contour import CYLINDER, VERTICES, figures
+from naod.pose.around import lonely_share, places_around, visible_area
+from naod.pose.contour import CYLINDER, VERTICES, figures, seen_outline
 from naod.pose.convex import convex_points
 from naod.pose.explore import POINTS, READINGS, explore, residuals_of
-from naod.pose.frames import whole
 from naod.pose.guesses import (
     GUESSES_MAX,
     cut_rectangle_guesses,
@@ -84,7 +84,7 @@ def coarse_fit(
     )  # fmt: skip
     if count == 0:
         return None
-    readings = [whole(pose) for pose in poses[:count]]
+    readings = [transform(pose[:, :3], pose[:, 3]) for pose in poses[:count]]
     cost, support, area, gaps = (float(value) for value in found)
     return CoarseFit(readings[0], cost, support, area, gaps, readings[1] if count > 1 else None)
 
@@ -104,11 +104,10 @@ def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
 COST, SUPPORT, AREA, GAPS = range(4)
 FOUND = 4
 _SIDES = ("left", "top", "right", "bottom")
-_WHOLE = np.zeros(4, dtype=np.bool_)
 
 
 def _sides(blob: Blob) -> NDArray[np.bool_]:
-    return np.array([side in blob.clipped for side in _SIDES]) if blob.clipped else _WHOLE
+    return np.array([side in blob.clipped for side in _SIDES])
 
 
 @njit(cache=True, nogil=True)

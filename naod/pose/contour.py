@@ -22,7 +22,7 @@ ARC = 24
 
 VERTICES = 2 * ARC + 3
 TOP, RIGHT, BOTTOM, LEFT = range(4)
-DEPTH_LEAST_M = 1e-6
+DEPTH_MIN_M = 0.02
 
 
 def figures(shape: ObjectShape) -> tuple[int, float, float]:
@@ -110,6 +110,41 @@ def is_arc(kind: int, edge: int) -> bool:
 
 
 @njit(cache=True, nogil=True)
+def project(
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    count: int,
+    image: NDArray[np.float64],
+) -> None:
+    """Vertices of an outline, (n, 3), as u, v and depth, (n, 3)."""
+    for k in range(count):
+        x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
+        depth = R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2]
+        depth = max(depth, DEPTH_MIN_M)
+        image[k, 0] = (R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0]) / depth
+        image[k, 1] = (R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1]) / depth
+        image[k, 2] = depth
+
+
+@njit(cache=True, nogil=True)
+def seen_outline(
+    kind: int,
+    half_width: float,
+    half_height: float,
+    T: NDArray[np.float64],
+    image: NDArray[np.float64],
+    names: NDArray[np.int64],
+) -> int:
+    """Fill `image` (VERTICES, 3) with u, v, depth and `names` of the pieces; their number."""
+    vertices = np.empty((VERTICES, 3))
+    R, t = T[:, :3].copy(), T[:, 3].copy()
+    pieces = outline(kind, half_width, half_height, R, t, vertices, names)
+    project(R, t, vertices, pieces + 1, image)
+    return pieces
+
+
+@njit(cache=True, nogil=True)
 def pixels_of(
     kind: int,
     half_width: float,
@@ -119,15 +154,10 @@ def pixels_of(
     pixels: NDArray[np.float64],
 ) -> int:
     """Fill where the outline at T (3, 4) is seen, (VERTICES, 2) px; the number of pieces."""
-    vertices, edges = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
-    R, t = T[:, :3].copy(), T[:, 3].copy()
-    pieces = outline(kind, half_width, half_height, R, t, vertices, edges)
+    image, names = np.empty((VERTICES, 3)), np.empty(VERTICES, dtype=np.int64)
+    pieces = seen_outline(kind, half_width, half_height, T, image, names)
     for k in range(pieces + 1):
-        x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
-        depth = max(R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2], DEPTH_LEAST_M)
-        u = (R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0]) / depth
-        v = (R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1]) / depth
-        pixels[k, 0], pixels[k, 1] = to_pixel(lens, u, v)
+        pixels[k, 0], pixels[k, 1] = to_pixel(lens, image[k, 0], image[k, 1])
     return pieces
 
 

@@ -15,9 +15,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.linear import solve_symmetric
-from naod.pose.contour import CYLINDER, VERTICES, figures, is_arc, outline
-from naod.pose.foot import DEPTH_MIN_M, foot, nearest, project, tangent
-from naod.pose.frames import whole
+from naod.geometry.transforms import transform
+from naod.pose.contour import CYLINDER, DEPTH_MIN_M, VERTICES, figures, is_arc, outline, project
+from naod.pose.foot import foot, nearest, tangent
 from naod.pose.objects import ObjectShape
 from naod.pose.shared import give_way, point_sigma
 
@@ -276,7 +276,7 @@ def fit_outline(
         offsets,
     )
     return Fit(
-        whole(T),
+        transform(T[:, :3], T[:, 3]),
         residuals * focal_px,
         jacobian * focal_px,
         edges,

@@ -10,27 +10,8 @@ from numpy.typing import NDArray
 
 from naod.pose.contour import ARC, CYLINDER, is_arc
 
-DEPTH_MIN_M = 0.02
 STRIDE = 5
 """Of the corners looked at first, a divisor of their number."""
-
-
-@njit(cache=True, nogil=True)
-def project(
-    R: NDArray[np.float64],
-    t: NDArray[np.float64],
-    vertices: NDArray[np.float64],
-    count: int,
-    image: NDArray[np.float64],
-) -> None:
-    """Vertices of an outline, (n, 3), as u, v and depth, (n, 3)."""
-    for k in range(count):
-        x, y, z = vertices[k, 0], vertices[k, 1], vertices[k, 2]
-        depth = R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2]
-        depth = max(depth, DEPTH_MIN_M)
-        image[k, 0] = (R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0]) / depth
-        image[k, 1] = (R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1]) / depth
-        image[k, 2] = depth
 
 
 @njit(cache=True, nogil=True)

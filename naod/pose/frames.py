@@ -1,4 +1,4 @@
-"""Rotations and poses from directions."""
+"""Rotations from directions."""
 
 from __future__ import annotations
 
@@ -6,20 +6,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-
-
-def pose(R: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(4, 4) from its parts."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, t
-    return T
-
-
-def whole(T: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(4, 4) from its upper three rows."""
-    out = np.zeros((4, 4))
-    out[:3], out[3, 3] = T, 1.0
-    return out
 
 
 def facing(axis: NDArray[np.float64], centre: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from naod.perception.edges import COLUMNS, OFFSET, SIGMA, WITHIN, measure
 from naod.perception.profile import colour_at
-from naod.pose.around import narrowest, places_around, seen_outline
-from naod.pose.contour import VERTICES
+from naod.pose.around import narrowest, places_around
+from naod.pose.contour import VERTICES, seen_outline
 from naod.pose.lens import focal
 from naod.pose.tally import FOUND, LOOKED, RISE, SHARP_RISE_PX, SPAN, doubt, mixed_px, tell
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
+from naod.geometry.transforms import transform
 from naod.perception.blob import oriented_box
 from naod.pose.contour import BOTTOM, LEFT, RIGHT, TOP, outline_in_camera
-from naod.pose.frames import pose
 from naod.pose.objects import Cylinder, ObjectShape, Rectangle
 from naod.pose.reading import Reading
 
@@ -72,7 +72,7 @@ def cylinder_as_printed(corners: NDArray[np.float64], shape: Cylinder) -> NDArra
     lower = _at((K + J) / 2.0, _cylinder_depth(r, float(np.linalg.norm(K - J)) / 2.0))
     centre = (upper + lower) / 2.0 + (0.0, 0.0, r)
     beside = _at((H + J) / 2.0, centre[2])
-    return pose(_axes(beside - centre, upper - lower), centre)
+    return transform(_axes(beside - centre, upper - lower), centre)
 
 
 def rectangle_as_printed(corners: NDArray[np.float64], shape: Rectangle) -> NDArray[np.float64]:
@@ -83,7 +83,7 @@ def rectangle_as_printed(corners: NDArray[np.float64], shape: Rectangle) -> NDAr
     right = _at((H + J) / 2.0, half / (float(np.linalg.norm(H - J)) / 2.0))
     centre = (left + right) / 2.0
     upper = _at((G + H) / 2.0, centre[2])
-    return pose(_axes(right - left, upper - centre), centre)
+    return transform(_axes(right - left, upper - centre), centre)
 
 
 def _cylinder_depth(r: float, r_seen: float) -> float:

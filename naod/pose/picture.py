@@ -10,10 +10,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
+from naod.geometry.transforms import transform
 from naod.pose.coarse import CoarseFit
 from naod.pose.contour import VERTICES, figures, pixels_of, take_corners
 from naod.pose.fit import Fit
-from naod.pose.frames import whole
 from naod.pose.lens import lens_of
 from naod.pose.noise import COMMON, EdgeNoise
 from naod.pose.objects import ObjectShape
@@ -80,9 +80,9 @@ def see(
     points, residuals, jacobian, edges, weights, groups, trust, spreads, offsets = measured
     if not len(points):
         return None
-    T = whole(poses[0])
+    T = transform(poses[0][:, :3], poses[0][:, 3])
     fit = Fit(T, residuals, jacobian, edges, weights, groups, spreads, offsets)
-    other = whole(poses[1]) if math.isfinite(gap) else None
+    other = transform(poses[1][:, :3], poses[1][:, 3]) if math.isfinite(gap) else None
     reading = Reading(fit, points, trust, support)
     return Seen(reading, total, corners, blur_of(rise_px), seen, other, gap)
 

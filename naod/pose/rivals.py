@@ -8,8 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.pose.around import seen_outline
-from naod.pose.contour import CYLINDER, RECTANGLE, VERTICES
+from naod.pose.contour import CYLINDER, RECTANGLE, VERTICES, seen_outline
 from naod.pose.explore import INDEPENDENT, READINGS, angle_between, unlikeliness
 from naod.pose.guesses import put, tilted
 from naod.pose.refine import fit_edges

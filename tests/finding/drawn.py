@@ -4,11 +4,12 @@ import cv2
 import numpy as np
 
 from naod.geometry.camera import nominal_camera
+from naod.geometry.transforms import transform
 from naod.perception.colour_model import ColourModel
 from naod.perception.energy import STEPS
 from naod.perception.segmenter import Segmentation
 from naod.pose.contour import outline_px
-from naod.pose.frames import facing, pose
+from naod.pose.frames import facing
 
 CAMERA = nominal_camera("v6", 640, 480)
 SMALL = CAMERA.resized(160, 120)
@@ -21,7 +22,7 @@ MODEL = ColourModel(mean=RED, covariance=((9.0, 0.0, 0.0), (0.0, 9.0, 0.0), (0.0
 def standing(x, y, z):
     """T_camera_object of an upright thing, seen level."""
     centre = np.array([x, y, z])
-    return pose(facing(np.array([0.0, -1.0, 0.0]), centre), centre)
+    return transform(facing(np.array([0.0, -1.0, 0.0]), centre), centre)
 
 
 def draw(mask, shape, T):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from naod.finding.calibration import fitted, gathered, reliability, text_of
-from naod.finding.presence import WEIGHTS, fitted_weights
+from naod.finding.measure import MEASURES
+from naod.finding.presence import CHOSEN, WEIGHTS, fitted_weights, log_odds, terms, weights_of
 
 SEEDS = range(500, 506)
 """Each of the things once with and once without the object."""
@@ -35,3 +36,13 @@ def test_a_fit_gives_a_file_that_is_read_back(samples, tmp_path):
     assert np.isfinite(brier)
     # fitted to these very rooms it can hardly be worse
     assert brier < reliability(samples, fitted_weights())[0] + 0.02
+
+
+def test_log_odds_are_the_weighted_terms_of_each_case():
+    measures = np.random.default_rng(0).uniform(-1.0, 6.0, (8, MEASURES))
+    cuts, weights = np.arange(8) % 3, fitted_weights()
+    rows = terms(measures)
+    expected = np.where(cuts > 0, rows @ weights["cut"], rows @ weights["whole"])
+    assert np.allclose(log_odds(measures, cuts, weights_of(True)), expected)
+    expected = rows @ weights["unknown"] + CHOSEN
+    assert np.allclose(log_odds(measures, cuts, weights_of(False)), expected)

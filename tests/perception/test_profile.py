@@ -5,6 +5,7 @@ import pytest
 from test_edges import encoded
 
 from naod.perception.profile import outer_side
+from naod.perception.profile import profile as sampled
 
 RED, ORANGE, GREY = (0.45, 0.01, 0.02), (0.85, 0.10, 0.01), (0.46, 0.46, 0.43)
 STEP_PX, INSIDE_PX, FEW = 0.6, 12.0, 6
@@ -44,3 +45,31 @@ def test_a_mixture_of_two_is_no_strip(beyond):
     colours, at = profile(0.0, 8.0, beyond)
     first = outer_side(colours, len(colours), FEW, colours[0])
     assert at[first] > 3.0
+
+
+def bilinear(plane, x, y):
+    """numpy's own, along one axis and then the other; beyond the plane its border goes on."""
+    rows = [np.interp(x, np.arange(plane.shape[1]), row) for row in plane]
+    return np.interp(y, np.arange(plane.shape[0]), rows)
+
+
+@pytest.mark.parametrize("place", [(20.3, 15.7), (3.1, 2.2), (36.6, 27.9), (1.0, 15.0)])
+def test_colours_along_a_normal_are_bilinear_inside_and_at_the_border(place):
+    rng = np.random.default_rng(1)
+    yuyv = rng.integers(0, 256, (30, 40, 2), dtype=np.uint8)
+    luma, chroma = yuyv[..., 0].astype(float), yuyv[..., 1].astype(float)
+    for angle in np.linspace(0.1, 6.2, 9):
+        normal = np.array([np.cos(angle), np.sin(angle)])
+        colours = np.empty((64, 3))
+        count = sampled(yuyv, np.array(place), normal, 3.0, 0.5, 2.0, colours)
+        assert count == 13
+        for k in range(count):
+            x, y = np.array(place) + max((k - 6) * 0.5, -2.0) * normal
+            x, y = min(max(x, 0.0), 39.0), min(max(y, 0.0), 29.0)
+            pair = 0.5 * (x - 0.5)
+            expected = (
+                bilinear(luma, x, y),
+                bilinear(chroma[:, 0::2], pair, y),
+                bilinear(chroma[:, 1::2], pair, y),
+            )
+            assert np.allclose(colours[k], expected)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from naod.pose.frames import facing, pose
+from naod.geometry.transforms import transform
+from naod.pose.frames import facing
 
 
 def cylinder_from_sides(left, right, ends, shape):
@@ -19,7 +20,7 @@ def cylinder_from_sides(left, right, ends, shape):
     nearest = -(n1 + n2) * (shape.radius_m / (1.0 + n1 @ n2))
     upper, lower = (_along(nearest, axis, np.append(end, 1.0)) for end in ends)
     centre = nearest + axis * (upper + lower) / 2.0
-    return pose(facing(axis if upper > lower else -axis, centre), centre)
+    return transform(facing(axis if upper > lower else -axis, centre), centre)
 
 
 def _along(foot, axis, ray):

@@ -1,6 +1,7 @@
 """Outline, residuals, their derivatives and the closed forms, each by another way."""
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 from closed_forms import cylinder_from_sides
@@ -11,7 +12,7 @@ from raster import BOARD, CAMERA, CAN, board_pose, can_pose, meets, towards_came
 
 from naod.geometry.linear import invert_symmetric, solve_symmetric
 from naod.geometry.transforms import rot_x, rot_y, rot_z, transform
-from naod.pose.contour import ARC, figures, outline_in_camera, outline_px
+from naod.pose.contour import ARC, corners_px, figures, outline_in_camera, outline_px
 from naod.pose.fit import compare, fit_outline
 from naod.pose.guesses import mirror, rectangle_from_quadrilateral
 
@@ -159,6 +160,16 @@ def test_the_mirror_reading_looks_the_same_from_afar():
     assert np.abs(seen[0] - seen[1]).max() < 0.002 * np.ptp(seen[0], axis=0).max()
 
 
+@pytest.mark.parametrize(("shape", "T"), POSES)
+@pytest.mark.parametrize("distortion", [None, (-0.1, 0.05, 0.001, -0.002, 0.01)])
+def test_an_outline_is_seen_where_opencv_projects_it(shape, T, distortion):
+    camera = msgspec.structs.replace(CAMERA, distortion=distortion)
+    points, _ = outline_in_camera(shape, T)
+    assert np.allclose(outline_px(shape, T, camera), camera.project(points), atol=1e-6)
+    ends = [0, ARC, ARC + 1, 2 * ARC + 1] if shape is CAN else [0, 1, 2, 3]
+    assert np.allclose(corners_px(shape, T, camera), camera.project(points[ends]), atol=1e-6)
+
+
 def test_small_symmetric_systems_equal_numpys():
     rng = np.random.default_rng(5)
     for n in (3, 6):
@@ -167,6 +178,8 @@ def test_small_symmetric_systems_equal_numpys():
         expected = np.linalg.solve(A, b)
         assert solve_symmetric(A.copy(), b, x)
         assert np.allclose(x, expected)
+        assert solve_symmetric(A.copy(), b, b)
+        assert np.allclose(b, expected)
         inverse = np.empty((n, n))
         assert invert_symmetric(A.copy(), inverse)
         assert np.allclose(inverse, np.linalg.inv(A))
