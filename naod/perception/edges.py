@@ -47,6 +47,11 @@ ALIKE_PX, ALIKE_SHARE = 0.1, 0.05
 """Standard deviation of the widths over which edges along one direction mix light, and of such a
 width, its share."""
 
+SHARP_PX, SHARP_INFORMATION, SHARP_UNTIL_PX = 1.05, 300.0, 1.0
+"""Over so much light mixes without motion: the pixel itself. How surely that is so where steps are
+no wider than without motion, and the motion from which nothing of it is left. What few edges say of
+their widths must not count for more: those that seem wide say more of it than sharp ones."""
+
 CONTRAST_MIN = 3.0
 """Separation of the plateaus, in standard deviations, below which there is no edge to see."""
 
@@ -135,18 +140,48 @@ def _place(
 
 
 @njit(cache=True, nogil=True)
-def _usual(kept: NDArray[np.float64], groups: NDArray[np.int64], side: int, count: int) -> float:
-    """Median of the widths over which a pair of edges mixes light, by what is known of each."""
-    total = below = 0.0
+def _sharpness(
+    normals: NDArray[np.float64],
+    groups: NDArray[np.int64],
+    side: int,
+    count: int,
+    found: NDArray[np.float64],
+) -> float:
+    """Information there is without looking that edges of a pair are sharp, by how they seem."""
+    seeming, n = np.empty(count), 0
+    for i in range(count):
+        if groups[i] % 2 == side and np.isfinite(found[i, SIGMA]):
+            seeming[n] = _seeming(normals[i], found[i, WIDTH])
+            n += 1
+    if n == 0:
+        return 0.0
+    motion = float(np.median(seeming[:n])) - SHARP_PX
+    return SHARP_INFORMATION * min(max(1.0 - motion / SHARP_UNTIL_PX, 0.0), 1.0)
+
+
+@njit(cache=True, nogil=True)
+def _usual(
+    kept: NDArray[np.float64], groups: NDArray[np.int64], side: int, count: int, sharp: float
+) -> float:
+    """Median of the widths over which a pair of edges mixes light, by what is known of each.
+
+    sharp: information that it is SHARP_PX. 0 where nothing is known.
+    """
+    total, below, counted = sharp, 0.0, False
     for i in range(count):
         if groups[i] % 2 == side:
             total += kept[i, _OF_WIDTH]
     for i in np.argsort(kept[:count, _MIXING]):
-        if groups[i] % 2 == side:
-            below += kept[i, _OF_WIDTH]
+        if groups[i] % 2 != side:
+            continue
+        if not counted and kept[i, _MIXING] >= SHARP_PX:
+            below, counted = below + sharp, True
             if below > 0.0 and 2.0 * below >= total:
-                return float(kept[i, _MIXING])
-    return 0.0
+                return SHARP_PX
+        below += kept[i, _OF_WIDTH]
+        if below > 0.0 and 2.0 * below >= total:
+            return float(kept[i, _MIXING])
+    return SHARP_PX if sharp > 0.0 else 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -167,7 +202,8 @@ def _place_alike(
     they look the same. The others of its direction tell.
     """
     for side in range(2):
-        usual = _usual(kept, groups, side, count)
+        sharp = _sharpness(normals, groups, side, count, found)
+        usual = _usual(kept, groups, side, count, sharp)
         spread = ALIKE_PX + ALIKE_SHARE * usual
         for i in range(count):
             if groups[i] % 2 != side or kept[i, _OF_WIDTH] == 0.0:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-FLOOR, COMMON, EDGE, PER_BLUR, PER_RISE, PER_POINT, UNSTEADY = range(7)
+FLOOR, COMMON, EDGE, PER_BLUR, PER_RISE, PER_ODD, PER_POINT, UNSTEADY = range(8)
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,9 +17,10 @@ class EdgeNoise:
     `floor_px`: least standard deviation of one point. `common_px`: the whole outline too wide or
     too narrow, `edge_px`: each edge by itself, both where it is sharp. `edge_per_blur`: px more for
     each over which motion mixes light there. `edge_per_rise`: px over which the sides of a step go
-    on as they rise where they are seen: so much of the mixing an edge may be off. `per_point`:
-    neighbours that err together. `fits_px`: a point further away belongs to something else.
-    `unsteady_px`: each edge by itself where motion during the exposure was not even.
+    on as they rise where they are seen: so much of the mixing an edge may be off. `per_odd`: px for
+    each by which its steps are unlike the others' of one look. `per_point`: neighbours that err
+    together. `fits_px`: a point further away belongs to something else.
+    `unsteady_px`: the whole picture to one side where motion during the exposure was not even.
     """
 
     floor_px: float
@@ -27,13 +28,14 @@ class EdgeNoise:
     edge_px: float
     edge_per_blur: float
     edge_per_rise: float
+    per_odd: float
     per_point: float
     fits_px: float
     unsteady_px: float = 0.0
 
     @property
     def figures(self) -> NDArray[np.float64]:
-        """(7,) as the kernels take them."""
+        """(8,) as the kernels take them."""
         return np.array(
             [
                 self.floor_px,
@@ -41,6 +43,7 @@ class EdgeNoise:
                 self.edge_px,
                 self.edge_per_blur,
                 self.edge_per_rise,
+                self.per_odd,
                 self.per_point,
                 self.unsteady_px,
             ]

@@ -14,18 +14,21 @@ from naod.geometry.transforms import transform
 from naod.pose.coarse import CoarseFit
 from naod.pose.contour import VERTICES, figures, pixels_of, take_corners
 from naod.pose.fit import Fit
-from naod.pose.lens import lens_of
-from naod.pose.noise import COMMON, EdgeNoise
+from naod.pose.lens import focal, lens_of
+from naod.pose.noise import COMMON, UNSTEADY, EdgeNoise
 from naod.pose.objects import ObjectShape
 from naod.pose.reading import Reading
 from naod.pose.refine import PLACES_MAX, find_edges
 from naod.pose.rivals import RIVALS_MAX, add_rivals, settle
 from naod.pose.tally import BLUR, RISE, RISE_ASIDE, SHARP_RISE_PX, TALLY, aliased, mixed_px
-from naod.pose.uncertainty import stated
+from naod.pose.uncertainty import add_turn, stated
 from naod.pose.wide import find_readings
 
 BLURRED = 1.25
 """How much wider a step is before that is called motion."""
+
+MOVING_PX = 3.0
+"""A camera that is seen to move so far during an exposure may do so unevenly."""
 
 HALF = 0.5
 SUPPORTED, DOUBTFUL = 0.88, 12.0
@@ -161,10 +164,20 @@ def _see(
         near = fits_px * max(1.0, tally[BLUR] / SHARP_RISE_PX)
         support = _shares(residuals[:n], edges[:n], looked, near, seen)
         total[:] = _told(kind, poses[0], tally, measured, noise)
+        add_turn(poses[0, :, 3], _unsteady(tally, noise) / focal(lens), total)
         pixels_of(kind, half_width, half_height, poses[0], lens, pixels)
         take_corners(kind, pixels, corners)
         total *= (1.0 + DOUBTFUL * max(SUPPORTED - support, 0.0)) ** 2
     return gap, support, tally[BLUR], seen, total, corners, measured
+
+
+@njit(cache=True, nogil=True)
+def _unsteady(tally: NDArray[np.float64], noise: NDArray[np.float64]) -> float:
+    """How far the picture as a whole may be from the middle of its exposure, px."""
+    moved = math.hypot(
+        mixed_px(tally[RISE], SHARP_RISE_PX), mixed_px(tally[RISE_ASIDE], SHARP_RISE_PX)
+    )
+    return noise[UNSTEADY] * min(moved / MOVING_PX, 1.0) ** 2
 
 
 @njit(cache=True, nogil=True)

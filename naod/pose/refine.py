@@ -12,7 +12,7 @@ from naod.pose.explore import stand_up
 from naod.pose.fit import descend
 from naod.pose.lens import focal, from_pixels
 from naod.pose.looking import look
-from naod.pose.noise import EDGE, PER_BLUR, PER_RISE, UNSTEADY
+from naod.pose.noise import EDGE, PER_BLUR, PER_ODD, PER_RISE
 from naod.pose.tally import (
     MOVED,
     ODD_SIDES,
@@ -34,8 +34,8 @@ LOOKS = 3
 EVEN = 0.008
 """Rise of a side per px, of the step's, that shading and noise make."""
 
-MOVING_PX = 3.0
-"""A camera that is seen to move so far during an exposure may do so unevenly."""
+ALONG = 0.2
+"""Motion along an edge rounds its ends: what that counts for, of motion across it."""
 
 EDGE_FLOOR_PX, FLOOR_PX = 0.05, 0.15
 STEPS, SETTLED = 8, 1e-4
@@ -95,16 +95,15 @@ def edge_spreads(
     noise: NDArray[np.float64], tally: NDArray[np.float64], spreads: NDArray[np.float64]
 ) -> None:
     """How far each edge (4,) may be off as a whole, px, by what its steps are like."""
-    moved = math.hypot(
-        mixed_px(tally[RISE], SHARP_RISE_PX), mixed_px(tally[RISE_ASIDE], SHARP_RISE_PX)
-    )
-    unsteady = noise[UNSTEADY] * min(moved / MOVING_PX, 1.0) ** 2
     for edge in range(4):
         mixed = mixed_px(tally[RISE + edge % 2], SHARP_RISE_PX)
+        along = ALONG * mixed_px(tally[RISE + 1 - edge % 2], SHARP_RISE_PX)
         uneven = max(tally[UNEVEN_SIDES + edge] - EVEN, 0.0)
-        blurred = mixed * (noise[PER_BLUR] + noise[PER_RISE] * uneven) + tally[ODD_SIDES + edge]
-        sharp = math.hypot(noise[EDGE] * aliased(mixed), unsteady)
-        spreads[edge] = math.hypot(sharp, blurred)
+        blurred = math.hypot(
+            noise[PER_BLUR] * math.hypot(mixed, along), noise[PER_RISE] * uneven * mixed
+        )
+        odd = noise[PER_ODD] * tally[ODD_SIDES + edge]
+        spreads[edge] = math.hypot(noise[EDGE] * aliased(mixed), math.hypot(blurred, odd))
 
 
 @njit(cache=True, nogil=True)

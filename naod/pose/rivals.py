@@ -21,7 +21,10 @@ LEVEL_RAD = 0.01
 NEARLY_LEVEL = 0.2
 """Sine of a tilt below which a can may as well be tilted the other way, or not at all."""
 
-RIVALS_MAX = READINGS + 1
+TILTED = 0.03
+"""Sine of a tilt above which a can that is nearly level has been taken to be tilted."""
+
+RIVALS_MAX = READINGS + 2
 DISTINCT_RAD = 0.01
 FACE_ON = 1.4
 """By how much the aspect of a board seen face on may be another than its own."""
@@ -83,7 +86,10 @@ def add_rivals(
     if abs(along) > NEARLY_LEVEL * math.sqrt(away2):
         return count
     tilted(poses[0], math.copysign(LEVEL_RAD, -along), poses[count])
-    return count + 1
+    if abs(along) < TILTED * math.sqrt(away2):
+        return count + 1
+    tilted(poses[0], -0.5 * math.asin(along / math.sqrt(away2)), poses[count + 1])
+    return count + 2
 
 
 @njit(cache=True, nogil=True)

@@ -71,6 +71,21 @@ def _add_shared(
 
 
 @njit(cache=True, nogil=True)
+def add_turn(t: NDArray[np.float64], sigma: float, total: NDArray[np.float64]) -> None:
+    """Add to a covariance (6, 6), as `stated` has it, a turn of the camera about its x and its y.
+
+    t: (3,) m, of the pose. sigma: standard deviation of the turn about either, rad.
+    """
+    moves = np.zeros((2, 6))
+    moves[0, 1], moves[0, 2], moves[0, 3] = -t[2], t[1], 1.0
+    moves[1, 0], moves[1, 2], moves[1, 4] = t[2], -t[0], 1.0
+    for k in range(2):
+        for i in range(6):
+            for j in range(6):
+                total[i, j] += sigma * sigma * moves[k, i] * moves[k, j]
+
+
+@njit(cache=True, nogil=True)
 def _hold(kind: int, T: NDArray[np.float64], information: NDArray[np.float64]) -> None:
     """Fill the upper half, add what is known without looking; a can's own turn is known."""
     stiff = 1e6 * (information[3, 3] + information[4, 4] + information[5, 5])

@@ -62,6 +62,22 @@ def test_blur_widens_an_edge_without_moving_it(mixing_px):
     assert abs(found.mean()) < 0.06
 
 
+@pytest.mark.parametrize("mixing_px", [0.05, 0.4])
+def test_a_long_sharp_edge_that_leans_a_little_is_not_taken_for_a_wide_one(mixing_px):
+    """Few of its pixels tell how wide it is, and those that it seems wide to tell more."""
+    means = []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        angle = 0.02 + np.pi * (seed % 2)
+        normal = np.array([np.cos(angle), np.sin(angle)])
+        place = 23.5 * normal.sum() + rng.uniform(-1.0, 1.0)
+        picture = edge_picture(RED, WALL, place, angle, mixing_px, 1.5, rng)
+        places = 23.5 + np.outer(np.arange(-18.0, 19.0, 3.0), (-normal[1], normal[0]))
+        edges = measure_edges(picture, places, np.tile(normal, (len(places), 1)), 5.0, 20.0)
+        means.append((edges.offset_px - (place - places @ normal)).mean())
+    assert np.abs(means).max() < 0.06
+
+
 def test_noise_is_stated():
     found = errors(RED, WALL, 0.6, 2.0, noise=4.0)
     assert abs(found.mean()) < 0.06

@@ -1,5 +1,6 @@
 """Stated covariances against the scatter of estimates from noisy edges."""
 
+import cv2
 import numpy as np
 import pytest
 from edge_places import edge_places
@@ -8,7 +9,7 @@ from raster import BOARD, CAMERA, CAN, board_pose, can_pose
 from naod.pose.noise import EdgeNoise
 from naod.pose.reading import read_points
 from naod.pose.shared import give_way, point_sigma
-from naod.pose.uncertainty import covariance, misfit_ratio
+from naod.pose.uncertainty import add_turn, covariance, misfit_ratio
 
 CASES = [(CAN, can_pose((0.02, 0.05, 0.5), 0.5)), (BOARD, board_pose((0.0, 0.1, 0.8), 0.3, 0.4))]
 
@@ -20,6 +21,7 @@ def noise_of(common_px=0.0, edge_px=0.0):
         edge_px=edge_px,
         edge_per_blur=0.0,
         edge_per_rise=0.0,
+        per_odd=0.0,
         per_point=1.0,
         fits_px=2.0,
     )
@@ -119,3 +121,15 @@ def test_a_shape_that_is_not_quite_the_described_one_is_less_sure():
     assert misfit(bent) > 2.5
     spreads = [np.trace(covariance(r, shape, INDEPENDENT)[:3, :3]) for r in (plain, bent)]
     assert spreads[1] > 5.0 * spreads[0]
+
+
+def test_a_turn_of_the_camera_is_that_of_poses_turned_about_it():
+    t, sigma = np.array([0.3, -0.1, 0.9]), 0.004
+    rng = np.random.default_rng(12)
+    turns = np.zeros((20_000, 3))
+    turns[:, :2] = rng.normal(0.0, sigma, (20_000, 2))
+    moves = np.array([cv2.Rodrigues(turn)[0] @ t - t for turn in turns])
+    stated = np.zeros((6, 6))
+    add_turn(t, sigma, stated)
+    scatter = np.cov(np.hstack([moves, turns]).T)
+    assert np.allclose(stated, scatter, atol=0.03 * sigma**2)
