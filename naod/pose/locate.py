@@ -42,6 +42,7 @@ BOARD_NOISE = EdgeNoise(
     per_odd=0.16,
     per_point=0.9,
     fits_px=1.0,
+    scatter_px=0.085,
 )
 """Of edges in the picture. A can's shade off towards its sides, and hide what is beside them; a
 board's are even all along. Both by rendered walks (`naod bench poses`) of seeds 100 to 124."""

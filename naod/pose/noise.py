@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-FLOOR, COMMON, EDGE, PER_BLUR, PER_RISE, PER_ODD, PER_POINT, UNSTEADY = range(8)
+FLOOR, COMMON, EDGE, PER_BLUR, PER_RISE, PER_ODD, PER_POINT, UNSTEADY, SCATTER = range(9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +22,7 @@ class EdgeNoise:
     each by which its steps are unlike the others' of one look. `per_point`: neighbours that err
     together. `fits_px`: a point further away belongs to something else.
     `unsteady_px`: the whole picture to one side where motion during the exposure was not even.
+    `scatter_px`: points that scatter more lie before clutter, where all of an edge is worse.
     """
 
     floor_px: float
@@ -32,10 +34,11 @@ class EdgeNoise:
     per_point: float
     fits_px: float
     unsteady_px: float = 0.0
+    scatter_px: float = math.inf
 
     @property
     def figures(self) -> NDArray[np.float64]:
-        """(8,) as the kernels take them."""
+        """(9,) as the kernels take them."""
         return np.array(
             [
                 self.floor_px,
@@ -46,5 +49,6 @@ class EdgeNoise:
                 self.per_odd,
                 self.per_point,
                 self.unsteady_px,
+                self.scatter_px,
             ]
         )

@@ -15,11 +15,12 @@ from naod.pose.coarse import CoarseFit
 from naod.pose.contour import VERTICES, figures, pixels_of, take_corners
 from naod.pose.fit import Fit
 from naod.pose.lens import focal, lens_of
-from naod.pose.noise import COMMON, UNSTEADY, EdgeNoise
+from naod.pose.noise import COMMON, FLOOR, SCATTER, UNSTEADY, EdgeNoise
 from naod.pose.objects import ObjectShape
 from naod.pose.reading import Reading
 from naod.pose.refine import PLACES_MAX, find_edges
 from naod.pose.rivals import RIVALS_MAX, add_rivals, settle
+from naod.pose.shared import point_sigma
 from naod.pose.tally import BLUR, RISE, RISE_ASIDE, SHARP_RISE_PX, TALLY, aliased, mixed_px
 from naod.pose.uncertainty import add_turn, stated
 from naod.pose.wide import find_readings
@@ -29,6 +30,10 @@ BLURRED = 1.25
 
 MOVING_PX = 3.0
 """A camera that is seen to move so far during an exposure may do so unevenly."""
+
+SCATTER_PER_PX, SCATTER_MOST = 0.08, 2.0
+"""How much more points scatter per px of a step's width, and what is the most that it counts for.
+Before photographs sigma grows with the square of it."""
 
 HALF = 0.5
 SUPPORTED, DOUBTFUL = 0.88, 12.0
@@ -168,6 +173,7 @@ def _see(
         pixels_of(kind, half_width, half_height, poses[0], lens, pixels)
         take_corners(kind, pixels, corners)
         total *= (1.0 + DOUBTFUL * max(SUPPORTED - support, 0.0)) ** 2
+        total *= _cluttered(tally, measured, noise) ** 2
     return gap, support, tally[BLUR], seen, total, corners, measured
 
 
@@ -178,6 +184,17 @@ def _unsteady(tally: NDArray[np.float64], noise: NDArray[np.float64]) -> float:
         mixed_px(tally[RISE], SHARP_RISE_PX), mixed_px(tally[RISE_ASIDE], SHARP_RISE_PX)
     )
     return noise[UNSTEADY] * min(moved / MOVING_PX, 1.0) ** 2
+
+
+@njit(cache=True, nogil=True)
+def _cluttered(
+    tally: NDArray[np.float64], measured: _Measured, noise: NDArray[np.float64]
+) -> float:
+    """How much larger sigma is where edge points scatter more than motion explains."""
+    _, residuals, _, _, weights, groups, trust, _, offsets = measured
+    sigma = point_sigma(residuals, weights, trust, groups, offsets, noise[FLOOR])
+    usual = noise[SCATTER] * math.hypot(1.0, SCATTER_PER_PX * max(tally[RISE], tally[RISE_ASIDE]))
+    return min(max(sigma / usual, 1.0), SCATTER_MOST) ** 2
 
 
 @njit(cache=True, nogil=True)

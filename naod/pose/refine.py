@@ -99,9 +99,8 @@ def edge_spreads(
         mixed = mixed_px(tally[RISE + edge % 2], SHARP_RISE_PX)
         along = ALONG * mixed_px(tally[RISE + 1 - edge % 2], SHARP_RISE_PX)
         uneven = max(tally[UNEVEN_SIDES + edge] - EVEN, 0.0)
-        blurred = math.hypot(
-            noise[PER_BLUR] * math.hypot(mixed, along), noise[PER_RISE] * uneven * mixed
-        )
+        rising = noise[PER_RISE] * uneven * mixed
+        blurred = math.hypot(noise[PER_BLUR] * math.hypot(mixed, along), rising)
         odd = noise[PER_ODD] * tally[ODD_SIDES + edge]
         spreads[edge] = math.hypot(noise[EDGE] * aliased(mixed), math.hypot(blurred, odd))
 

@@ -23,7 +23,7 @@ def rows():
         patch.setenv(FOLDER_VARIABLE, "nowhere")
         photographs = coloured_photographs()
     assert set(photographs) == {"china", "flower"}
-    report = run(lambda told: None, WalkSettings(count=4), photographs, ("can",))
+    report = run(lambda told: None, WalkSettings(count=4), photographs)
     return {row[0]: dict(zip(COLUMNS, row, strict=True)) for row in report.rows}
 
 
@@ -35,10 +35,17 @@ def test_a_can_before_a_flower_of_nearly_its_colour_is_found_sharp(rows):
     assert row["distance % median"] < 1.0
 
 
-def test_it_is_found_blurred(rows):
-    row = rows["can, 33 ms"]
+@pytest.mark.parametrize("thing", ["can", "board"])
+def test_it_is_found_blurred(rows, thing):
+    row = rows[f"{thing}, 33 ms"]
     assert row["lost %"] <= 25.0
     assert row["box IoU"] > 0.7
+
+
+@pytest.mark.parametrize("name", ["can, 0 ms", "can, 33 ms", "board, 0 ms", "board, 33 ms"])
+def test_before_clutter_sigma_is_of_the_size_of_the_errors(rows, name):
+    # half of chi squared with three degrees of freedom are below 2.37
+    assert 0.4 < rows[name]["error²/sigma² median"] < 7.0
 
 
 def test_no_photograph_is_taken_for_it(rows):
