@@ -8,15 +8,30 @@ it exactly, first each by itself, then knowing over how many pixels the others m
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.perception.alike import (
+    COLUMNS,
+    CONTRAST,
+    DIRECTION,
+    GOES,
+    INNER,
+    KEPT,
+    OFFSET,
+    SIGMA,
+    UNEVEN,
+    WIDTH,
+    WITHIN,
+    place_alike,
+    put_edge,
+    seeming_px,
+)
 from naod.perception.encoding import mixture_scores
-from naod.perception.placing import PAIRS_MAX, SHARES, place_edge
+from naod.perception.placing import PAIRS_MAX, SHARES
 from naod.perception.profile import contrast_of, is_between, is_of, outer_side, plateau, profile
 from naod.perception.steps import crossing, goes_to, unevenness, width_of
 
@@ -25,32 +40,11 @@ SAMPLES_MAX = 129
 FEW_SHARES = 5
 """Mixtures of two colours that are asked for where edges are only looked for."""
 
-GATHERED2 = 0.9
-"""Variance that shared chroma and bilinear samples add to a profile along a row, px squared."""
-
-OFFSET, SIGMA, WIDTH, WITHIN, UNEVEN, GOES = range(6)
-COLUMNS = 6
-"""Of what is measured at a place; `UNEVEN`: by how much of the step the two sides rise per px;
-`GOES`: as `goes_to` has it, 0 where nothing moved much."""
-
-_MIXING, _OF_WIDTH, _CONTRAST, _INNER, _DIRECTION, _KEPT = 0, 1, 2, 3, 6, 9
-"""Of an edge that is placed: px over which it mixes light, information about that, its contrast,
-and the inner colour and direction of its two sides."""
-
 WIDTH_MAX_PX = 25.0
 """Where light mixes over more pixels than this, their number is too large to matter."""
 
 PACE_FROM_PX = 6.0
 """Shorter motions leave no beginning of a step to look at."""
-
-ALIKE_PX, ALIKE_SHARE = 0.1, 0.05
-"""Standard deviation of the widths over which edges along one direction mix light, and of such a
-width, its share."""
-
-SHARP_PX, SHARP_INFORMATION, SHARP_UNTIL_PX = 1.05, 300.0, 1.0
-"""Over so much light mixes without motion: the pixel itself. How surely that is so where steps are
-no wider than without motion, and the motion from which nothing of it is left. What few edges say of
-their widths must not count for more: those that seem wide say more of it than sharp ones."""
 
 CONTRAST_MIN = 3.0
 """Separation of the plateaus, in standard deviations, below which there is no edge to see."""
@@ -106,116 +100,6 @@ def _sides(
 
 
 @njit(cache=True, nogil=True)
-def _seeming(normal: NDArray[np.float64], width: float) -> float:
-    """Px over which light mixes, by the width of a step along a normal."""
-    gathered2 = GATHERED2 * normal[0] ** 2 + 0.2 * normal[1] ** 2
-    return math.sqrt(max(width * width - 12.0 * gathered2, 1.0))
-
-
-@njit(cache=True, nogil=True)
-def _place(
-    yuyv: NDArray[np.uint8],
-    place: NDArray[np.float64],
-    normal: NDArray[np.float64],
-    width: float,
-    prior: float,
-    curve: NDArray[np.float64],
-    pairs: NDArray[np.float64],
-    kept: NDArray[np.float64],
-    found: NDArray[np.float64],
-) -> bool:
-    """Put an edge where its pixels say; False, and nothing changed, where they do not."""
-    shift, mixing, information, of_width = place_edge(
-        yuyv, place[0] + found[OFFSET] * normal[0], place[1] + found[OFFSET] * normal[1],
-        normal[0], normal[1], width, prior, kept[_INNER:_DIRECTION], kept[_DIRECTION:_KEPT], curve,
-        pairs,
-    )  # fmt: skip
-    if not information > 0.0:
-        return False
-    contrast = kept[_CONTRAST]
-    found[OFFSET] += shift
-    found[SIGMA] = 1.0 / (contrast * math.sqrt(information))
-    kept[_MIXING], kept[_OF_WIDTH] = mixing, max(of_width, 0.0) * contrast * contrast
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _sharpness(
-    normals: NDArray[np.float64],
-    groups: NDArray[np.int64],
-    side: int,
-    count: int,
-    found: NDArray[np.float64],
-) -> float:
-    """Information there is without looking that edges of a pair are sharp, by how they seem."""
-    seeming, n = np.empty(count), 0
-    for i in range(count):
-        if groups[i] % 2 == side and np.isfinite(found[i, SIGMA]):
-            seeming[n] = _seeming(normals[i], found[i, WIDTH])
-            n += 1
-    if n == 0:
-        return 0.0
-    motion = float(np.median(seeming[:n])) - SHARP_PX
-    return SHARP_INFORMATION * min(max(1.0 - motion / SHARP_UNTIL_PX, 0.0), 1.0)
-
-
-@njit(cache=True, nogil=True)
-def _usual(
-    kept: NDArray[np.float64], groups: NDArray[np.int64], side: int, count: int, sharp: float
-) -> float:
-    """Median of the widths over which a pair of edges mixes light, by what is known of each.
-
-    sharp: information that it is SHARP_PX. 0 where nothing is known.
-    """
-    total, below, counted = sharp, 0.0, False
-    for i in range(count):
-        if groups[i] % 2 == side:
-            total += kept[i, _OF_WIDTH]
-    for i in np.argsort(kept[:count, _MIXING]):
-        if groups[i] % 2 != side:
-            continue
-        if not counted and kept[i, _MIXING] >= SHARP_PX:
-            below, counted = below + sharp, True
-            if below > 0.0 and 2.0 * below >= total:
-                return SHARP_PX
-        below += kept[i, _OF_WIDTH]
-        if below > 0.0 and 2.0 * below >= total:
-            return float(kept[i, _MIXING])
-    return SHARP_PX if sharp > 0.0 else 0.0
-
-
-@njit(cache=True, nogil=True)
-def _place_alike(
-    yuyv: NDArray[np.uint8],
-    places: NDArray[np.float64],
-    normals: NDArray[np.float64],
-    count: int,
-    groups: NDArray[np.int64],
-    curves: NDArray[np.float64],
-    pairs: NDArray[np.float64],
-    kept: NDArray[np.float64],
-    found: NDArray[np.float64],
-) -> None:
-    """Place edges again that mix light over another width than their neighbours seem to.
-
-    Where an edge falls on the border of two pixels it may be sharp, or wider and a bit further out:
-    they look the same. The others of its direction tell.
-    """
-    for side in range(2):
-        sharp = _sharpness(normals, groups, side, count, found)
-        usual = _usual(kept, groups, side, count, sharp)
-        spread = ALIKE_PX + ALIKE_SHARE * usual
-        for i in range(count):
-            if groups[i] % 2 != side or kept[i, _OF_WIDTH] == 0.0:
-                continue
-            if abs(kept[i, _MIXING] - usual) >= ALIKE_PX:
-                prior = 1.0 / (spread * kept[i, _CONTRAST]) ** 2
-                _place(
-                    yuyv, places[i], normals[i], usual, prior, curves[i], pairs, kept[i], found[i]
-                )
-
-
-@njit(cache=True, nogil=True)
 def measure(
     yuyv: NDArray[np.uint8],
     places: NDArray[np.float64],
@@ -243,7 +127,7 @@ def measure(
     colours, scores = np.empty((SAMPLES_MAX, 3)), np.empty(SAMPLES_MAX)
     plateaus, scatter = np.empty((3, 3)), np.empty((3, 3))
     curves, pairs = np.empty((count, SHARES)), np.empty((PAIRS_MAX, 3))
-    kept = np.zeros((count, _KEPT))
+    kept = np.zeros((count, KEPT))
     few, shares = max(int(plateau_px / step), 2), SHARES if exact else FEW_SHARES
     for i in range(count):
         normal, one, curve = normals[i], found[i], curves[i, :shares]
@@ -270,12 +154,12 @@ def measure(
             continue
         if mixings[i] > PACE_FROM_PX:
             one[GOES] = goes_to(scores, end, at, curve, step, mixings[i])
-        kept[i, _CONTRAST] = contrast
-        kept[i, _INNER:_DIRECTION], kept[i, _DIRECTION:_KEPT] = plateaus[0], plateaus[2]
-        seeming = _seeming(normal, one[WIDTH])
-        _place(yuyv, places[i], normal, seeming, 0.0, curve, pairs, kept[i], one)
+        kept[i, CONTRAST] = contrast
+        kept[i, INNER:DIRECTION], kept[i, DIRECTION:KEPT] = plateaus[0], plateaus[2]
+        seeming = seeming_px(normal, one[WIDTH])
+        put_edge(yuyv, places[i], normal, seeming, 0.0, curve, pairs, kept[i], one)
     if exact:
-        _place_alike(yuyv, places, normals, count, groups, curves, pairs, kept, found)
+        place_alike(yuyv, places, normals, count, groups, curves, pairs, kept, found)
 
 
 _ANY = np.empty((0, 3))

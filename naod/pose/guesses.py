@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.geometry.vectors import cross, dot, unit
 from naod.pose.contour import CYLINDER
 
 GUESSES_MAX = 12
@@ -25,25 +26,6 @@ CUT_TURNS_RAD = ((0.0, 0.0), (0.6, 0.0), (-0.6, 0.0), (0.0, 0.6), (0.0, -0.6))
 """Of a clipped board about its x and y."""
 
 HIDDEN_SLACK = 0.15
-
-
-@njit(cache=True, nogil=True)
-def _unit(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    return x / max(math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]), 1e-12)
-
-
-@njit(cache=True, nogil=True)
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    out = np.empty(3)
-    out[0] = a[1] * b[2] - a[2] * b[1]
-    out[1] = a[2] * b[0] - a[0] * b[2]
-    out[2] = a[0] * b[1] - a[1] * b[0]
-    return out
-
-
-@njit(cache=True, nogil=True)
-def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @njit(cache=True, nogil=True)
@@ -62,15 +44,15 @@ def put(
 @njit(cache=True, nogil=True)
 def face(axis: NDArray[np.float64], centre: NDArray[np.float64], T: NDArray[np.float64]) -> None:
     """The pose (3, 4) whose y is along `axis` and whose z looks towards the camera."""
-    y = _unit(axis)
-    z = -centre + _dot(centre, y) * y
-    if _dot(z, z) < 1e-18 * _dot(centre, centre):
+    y = unit(axis)
+    z = -centre + dot(centre, y) * y
+    if dot(z, z) < 1e-18 * dot(centre, centre):
         # seen exactly along its axis: any z will do
         other = np.zeros(3)
         other[0 if abs(y[0]) < 0.9 else 1] = 1.0
-        z = _cross(y, other)
-    z = _unit(z)
-    put(_cross(y, z), y, z, centre, T)
+        z = cross(y, other)
+    z = unit(z)
+    put(cross(y, z), y, z, centre, T)
 
 
 @njit(cache=True, nogil=True)
@@ -80,19 +62,19 @@ def mirror(T: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     Both axes in the plane are reflected along the line of sight, which shows no difference there.
     """
     t = T[:, 3].copy()
-    forward = _unit(t)
-    x = T[:, 0] - 2.0 * _dot(T[:, 0], forward) * forward
-    y = T[:, 1] - 2.0 * _dot(T[:, 1], forward) * forward
-    put(x, y, _cross(x, y), t, out)
+    forward = unit(t)
+    x = T[:, 0] - 2.0 * dot(T[:, 0], forward) * forward
+    y = T[:, 1] - 2.0 * dot(T[:, 1], forward) * forward
+    put(x, y, cross(x, y), t, out)
 
 
 @njit(cache=True, nogil=True)
 def tilted(T: NDArray[np.float64], tilt: float, out: NDArray[np.float64]) -> None:
     """A can (3, 4) where it is, its axis tilted so far towards the viewer."""
     t = T[:, 3].copy()
-    forward = _unit(t)
-    up = T[:, 1] - _dot(T[:, 1], forward) * forward
-    face(math.cos(tilt) * _unit(up) - math.sin(tilt) * forward, t, out)
+    forward = unit(t)
+    up = T[:, 1] - dot(T[:, 1], forward) * forward
+    face(math.cos(tilt) * unit(up) - math.sin(tilt) * forward, t, out)
 
 
 @njit(cache=True, nogil=True)
@@ -163,8 +145,8 @@ def cylinder_guesses(
             distance = min(distance, 2.0 * half_height / along)
             size = 2.0 * radius / distance, 2.0 * half_height / distance
         _centre(corners, cut, turn, size, centre)
-        forward, t = _unit(centre), centre * distance
-        upright = _unit(up - _dot(up, forward) * forward)
+        forward, t = unit(centre), centre * distance
+        upright = unit(up - dot(up, forward) * forward)
         for k in range(_tilts(along / across, level, any_cut, tilts)):
             for sign in (1.0, -1.0):
                 tilt = sign * tilts[k]
@@ -198,14 +180,14 @@ def rectangle_from_quadrilateral(
     first[:2] = a
     right[:2], right[2] = b - a + g * b, g
     down[:2], down[2] = d - a + h * d, h
-    scale = math.sqrt(_dot(right, right)) / half_width + math.sqrt(_dot(down, down)) / half_height
+    scale = math.sqrt(dot(right, right)) / half_width + math.sqrt(dot(down, down)) / half_height
     if not scale > 1e-12:
         return False
-    along, across = _unit(_unit(right) - _unit(down)), _unit(_unit(right) + _unit(down))
-    x, y = _unit(across + along), _unit(along - across)
-    z, t = _cross(x, y), first * (4.0 / scale) + half_width * x - half_height * y
+    along, across = unit(unit(right) - unit(down)), unit(unit(right) + unit(down))
+    x, y = unit(across + along), unit(along - across)
+    z, t = cross(x, y), first * (4.0 / scale) + half_width * x - half_height * y
     put(x, y, z, t, T)
-    return t[2] > 0.0 and _dot(z, t) < 0.0
+    return t[2] > 0.0 and dot(z, t) < 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -291,8 +273,8 @@ def other_readings(
     if kind != CYLINDER:
         mirror(T, out[1])
         return 2
-    forward = _unit(T[:, 3].copy())
-    tilt = math.asin(min(max(-_dot(T[:, 1], forward), -1.0), 1.0))
+    forward = unit(T[:, 3].copy())
+    tilt = math.asin(min(max(-dot(T[:, 1], forward), -1.0), 1.0))
     tilted(T, -math.copysign(max(abs(tilt), TILT_LEAST_RAD), tilt), out[1])
     as_high = max(2.0 * math.atan2(half_width, half_height) - abs(tilt), TILT_LEAST_RAD)
     tilted(T, math.copysign(min(as_high, TILT_MOST_RAD), tilt), out[2])

@@ -8,7 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.edges import COLUMNS, OFFSET, SIGMA, WITHIN, measure
+from naod.perception.alike import COLUMNS, OFFSET, SIGMA, WITHIN
+from naod.perception.edges import measure
 from naod.perception.profile import colour_at
 from naod.pose.around import narrowest, places_around
 from naod.pose.contour import VERTICES, seen_outline

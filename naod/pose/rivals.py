@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from naod.geometry.vectors import cross, dot, unit
 from naod.pose.contour import CYLINDER, RECTANGLE, VERTICES, seen_outline
 from naod.pose.explore import INDEPENDENT, READINGS, angle_between, unlikeliness
 from naod.pose.guesses import put, tilted
@@ -74,8 +75,9 @@ def add_rivals(
     """Add to poses (RIVALS_MAX, 3, 4) what looks nearly like the first; returns how many.
 
     A can seen nearly level may be level: there the outline changes over from the near side of a rim
-    to the far one, and no descent comes across. A board on its side, turned away, may be one that
-    stands face on.
+    to the far one, and no descent comes across; and one that seems tilted may be half as tilted,
+    from where a descent comes back from edges of other things. A board on its side, turned away,
+    may be one that stands face on.
     """
     if kind != CYLINDER:
         return count + int(_upright(half_width, half_height, poses[0], poses[count]))
@@ -113,10 +115,9 @@ def _upright(
     distance = 2.0 * math.sqrt(half_width * half_height / (across * along))
     t, x = np.ones(3), np.zeros(3)
     t[:2], x[:2] = 0.25 * (a + b + c + d)[:2], right[:2] / across
-    z = -t / np.linalg.norm(t)
-    x -= (x @ z) * z
-    x /= np.linalg.norm(x)
-    put(x, np.cross(z, x), z, t * distance, out)
+    z = unit(-t)
+    x = unit(x - dot(x, z) * z)
+    put(x, cross(z, x), z, t * distance, out)
     return True
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.edges import GOES, OFFSET, SIGMA, UNEVEN, WIDTH
+from naod.perception.alike import GOES, OFFSET, SIGMA, UNEVEN, WIDTH
 
 LOOKED, FOUND, BLUR, SPAN, MOVED, RISE, RISE_ASIDE, UNEVEN_SIDES, ODD_SIDES = (
     0, 1, 2, 3, 4, 5, 6, 7, 11,

@@ -115,7 +115,7 @@ def stated(
     """(6, 6) of translation (m) and rotation (rad) along the camera's axes, of a pose (3, 4).
 
     residuals, jacobian: px. groups (n,), spreads and offsets (4,) px: as `descend` has them. noise:
-    (6,) `EdgeNoise.figures`. The turn of a cylinder about its own axis is fixed by convention and
+    (9,) `EdgeNoise.figures`. The turn of a cylinder about its own axis is fixed by convention and
     has no variance.
     """
     sigma = point_sigma(residuals, weights, trust, groups, offsets, noise[FLOOR])

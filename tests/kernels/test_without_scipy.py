@@ -6,8 +6,12 @@ the daemon's process on the robot.
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
+from pathlib import Path
+
+NEED_IT = ("np.linalg", "np.dot", "np.vdot")
 
 LOOK = """
 import sys
@@ -32,3 +36,27 @@ def test_an_object_is_localised() -> None:
     )
     assert done.returncode == 0, done.stderr[-2000:]
     assert done.stdout.split() == ["True", "True"]
+
+
+def kernels():
+    """All compiled functions, with the file they are in."""
+    for root in ("naod", "hal"):
+        for path in sorted((Path(__file__).parents[2] / root).rglob("*.py")):
+            for node in ast.walk(ast.parse(path.read_text())):
+                if isinstance(node, ast.FunctionDef) and any(
+                    "njit" in ast.unparse(decorator) for decorator in node.decorator_list
+                ):
+                    yield path.name, node
+
+
+def test_no_kernel_asks_for_what_needs_it() -> None:
+    """A kernel that was compiled before is kept, and then nobody notices above."""
+    asks = [
+        f"{name}, {kernel.name}: {ast.unparse(node)}"
+        for name, kernel in kernels()
+        for node in ast.walk(kernel)
+        if (isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult))
+        or (isinstance(node, ast.Attribute) and ast.unparse(node) in NEED_IT)
+    ]
+    assert asks == []
+    assert sum(1 for _ in kernels()) > 100

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from naod.perception.edges import COLUMNS, GOES, OFFSET, SIGMA, WIDTH
+from naod.perception.alike import COLUMNS, GOES, OFFSET, SIGMA, WIDTH
 from naod.pose.tally import (
     BLUR,
     MOVED,
