@@ -54,20 +54,19 @@ def put_edge(
     pairs: NDArray[np.float64],
     kept: NDArray[np.float64],
     found: NDArray[np.float64],
-) -> bool:
-    """Put an edge where its pixels say; False, and nothing changed, where they do not."""
+) -> None:
+    """Put an edge where its pixels say; nothing is changed where they do not."""
     shift, mixing, information, of_width = place_edge(
         yuyv, place[0] + found[OFFSET] * normal[0], place[1] + found[OFFSET] * normal[1],
         normal[0], normal[1], width, prior, kept[INNER:DIRECTION], kept[DIRECTION:KEPT], curve,
         pairs,
     )  # fmt: skip
     if not information > 0.0:
-        return False
+        return
     contrast = kept[CONTRAST]
     found[OFFSET] += shift
     found[SIGMA] = 1.0 / (contrast * math.sqrt(information))
     kept[MIXING], kept[OF_WIDTH] = mixing, max(of_width, 0.0) * contrast * contrast
-    return True
 
 
 @njit(cache=True, nogil=True)
@@ -98,21 +97,17 @@ def _usual(
 
     sharp: information that it is SHARP_PX. 0 where nothing is known.
     """
-    total, below, counted = sharp, 0.0, False
+    widths, known, n = np.full(count + 1, SHARP_PX), np.full(count + 1, sharp), 1
     for i in range(count):
         if groups[i] % 2 == side:
-            total += kept[i, OF_WIDTH]
-    for i in np.argsort(kept[:count, MIXING]):
-        if groups[i] % 2 != side:
-            continue
-        if not counted and kept[i, MIXING] >= SHARP_PX:
-            below, counted = below + sharp, True
-            if below > 0.0 and 2.0 * below >= total:
-                return SHARP_PX
-        below += kept[i, OF_WIDTH]
-        if below > 0.0 and 2.0 * below >= total:
-            return float(kept[i, MIXING])
-    return SHARP_PX if sharp > 0.0 else 0.0
+            widths[n], known[n] = kept[i, MIXING], kept[i, OF_WIDTH]
+            n += 1
+    total, below = known[:n].sum(), 0.0
+    for i in np.argsort(widths[:n]):
+        below += known[i]
+        if total > 0.0 and 2.0 * below >= total:
+            return float(widths[i])
+    return 0.0
 
 
 @njit(cache=True, nogil=True)

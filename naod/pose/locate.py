@@ -45,7 +45,8 @@ BOARD_NOISE = EdgeNoise(
     scatter_px=0.085,
 )
 """Of edges in the picture. A can's shade off towards its sides, and hide what is beside them; a
-board's are even all along. Both by rendered walks (`naod bench poses`) of seeds 100 to 124."""
+board's are even all along. Both by rendered walks (`naod bench poses`) of seeds 100 to 124, the
+scatter by photographs (`naod bench backdrops`)."""
 
 MASK_NOISE = EdgeNoise(
     floor_px=0.3,
