@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 Matrix = NDArray[np.float64]
 Vector = NDArray[np.float64]
 
+_LAST = (0.0, 0.0, 0.0, 1.0)
+
 
 def rot_x(angle: float) -> Matrix:
     """Rotation about x, (3, 3)."""
@@ -35,6 +37,13 @@ def transform(R: Matrix, t: Vector | tuple[float, float, float]) -> Matrix:
     T[:3, :3] = R
     T[:3, 3] = t
     return T
+
+
+def closed(T: Matrix) -> Matrix:
+    """The upper three rows of a transform, (3, 4), with the last one, (4, 4)."""
+    whole = np.empty((4, 4))
+    whole[:3], whole[3] = T, _LAST
+    return whole
 
 
 def inverse(T_a_b: Matrix) -> Matrix:

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.box import Box, Found, breaks_of_labels, empty_box, measure_box
+from naod.perception.box import Box, Found, breaks_of_labels, measure_box
 from naod.perception.components import components
 from naod.perception.runs import AREA, BOTTOM, LEFT, RIGHT, SUM_X, SUM_Y, TOP
 from naod.perception.segmenter import Segmentation
@@ -102,42 +102,59 @@ def blob_of(
 
     `grain_px`: full pixels per pixel of `labels`.
     """
-    height, width = labels.shape
-    extent = _together(table, wanted)
-    box = empty_box(height, width)
-    points, cut = _measured(labels, wanted, extent, box, float(grain_px))
-    return _blob(box, points, cut, int(extent[AREA]), grain_px)
+    corners, centre, boundary, cut, pixels = _drawn(
+        labels, np.ascontiguousarray(table), wanted, float(grain_px)
+    )
+    return _blob(Found(corners, centre, boundary), len(boundary), cut, pixels, grain_px)
 
 
-def _blob(box: Box | Found, points: int, cut: int, pixels: int, grain_px: float) -> Blob:
+def _blob(found: Found, points: int, cut: int, pixels: int, grain_px: float) -> Blob:
     area_px = pixels * grain_px**2
-    return Blob(box.centre, area_px, box.corners, box.boundary[:points], grain_px, _CLIPPED[cut])
-
-
-def _together(table: NDArray[np.int64], wanted: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """One line of a table of regions for several of them."""
-    rows = table[wanted[1:]]
-    extent = np.zeros(table.shape[1], dtype=np.int64)
-    for column in (AREA, SUM_X, SUM_Y):
-        extent[column] = rows[:, column].sum()
-    for column in (LEFT, TOP):
-        extent[column] = rows[:, column].min()
-    for column in (RIGHT, BOTTOM):
-        extent[column] = rows[:, column].max()
-    return extent
+    boundary = found.boundary[:points]
+    return Blob(found.centre, area_px, found.corners, boundary, grain_px, _CLIPPED[cut])
 
 
 @njit(cache=True, nogil=True)
-def _measured(
+def _together(
+    table: NDArray[np.int64], wanted: NDArray[np.bool_], extent: NDArray[np.int64]
+) -> None:
+    """One line of a table of regions for several of them."""
+    extent[:] = 0
+    extent[LEFT] = extent[TOP] = np.iinfo(np.int64).max
+    for k in range(table.shape[0]):
+        if wanted[k + 1]:
+            for column in (AREA, SUM_X, SUM_Y):
+                extent[column] += table[k, column]
+            for column in (LEFT, TOP):
+                extent[column] = min(extent[column], table[k, column])
+            for column in (RIGHT, BOTTOM):
+                extent[column] = max(extent[column], table[k, column])
+
+
+@njit(cache=True, nogil=True)
+def _drawn(
     labels: NDArray[np.int32],
+    table: NDArray[np.int64],
     wanted: NDArray[np.bool_],
-    extent: NDArray[np.int64],
-    box: Box,
     grain_px: float,
-) -> tuple[int, int]:
-    breaks_of_labels(labels, wanted, extent, box)
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], int, int]:
+    """Corners, centre and boundary px, the sides cut, and pixels of regions as one."""
     height, width = labels.shape
-    return measure_box(box, extent, height, width, grain_px)
+    extent = np.empty(table.shape[1], dtype=np.int64)
+    _together(table, wanted, extent)
+    rows, columns = extent[BOTTOM] - extent[TOP] + 1, extent[RIGHT] - extent[LEFT] + 1
+    box = Box(
+        np.empty((4, 2)),
+        np.empty(2),
+        np.empty((2 * (rows + 1) * (columns + 1), 2)),
+        np.empty(rows * (columns + 1) + 1, dtype=np.int32),
+        np.empty(height + 3, dtype=np.int32),
+        np.empty((2 * height + 1, 2), dtype=np.int32),
+        np.empty((4 * height + 4, 2), dtype=np.int32),
+    )
+    breaks_of_labels(labels, wanted, extent, box)
+    points, cut = measure_box(box, extent, height, width, grain_px)
+    return box.corners, box.centre, box.boundary[:points].copy(), cut, extent[AREA]
 
 
 UP = np.array([0.0, -1.0])

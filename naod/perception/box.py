@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.memory import LINE, Memory, float64s, int32s, zeroed
+from naod.perception.memory import LINE, Memory, float64s, int32s
 from naod.perception.rectangle import smallest_rectangle, upper_first
 from naod.perception.runs import AREA, BOTTOM, LEFT, RIGHT, SUM_X, SUM_Y, TOP, Runs
 
@@ -74,13 +74,6 @@ def box_in(memory: Memory, start: int, found: Found, height: int, width: int) ->
 def bytes_of_box(height: int, width: int) -> int:
     """Memory that scratch for an answer takes, at the most."""
     return 4 * height * (width + 16) + 16 * LINE
-
-
-def empty_box(height: int, width: int) -> Box:
-    """All the memory that masks of this size ever need."""
-    found = found_in(zeroed(bytes_of_found(height, width)), 0, height, width)[0]
-    box: Box = box_in(zeroed(bytes_of_box(height, width)), 0, found, height, width)[0]
-    return box
 
 
 @njit(cache=True, nogil=True)

@@ -16,8 +16,8 @@ from naod.perception.runs import (
     SUM_Y,
     TOP,
     Runs,
-    empty_runs,
     find_runs,
+    fresh_runs,
 )
 
 __all__ = ["AREA", "BOTTOM", "LEFT", "RIGHT", "SUM_X", "SUM_Y", "TOP", "components"]
@@ -31,13 +31,15 @@ def paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _components(
-    mask: NDArray[np.uint8], bits: NDArray[np.uint64], runs: Runs, labels: NDArray[np.int32]
-) -> int:
+def _components(mask: NDArray[np.uint8]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    height, width = mask.shape
+    labels = np.zeros((height, width), dtype=np.int32)
+    bits = np.empty(height * words_of(width), dtype=np.uint64)
     pack(mask, bits)
-    count, regions = find_runs(bits, *mask.shape, runs)
+    runs = fresh_runs(height, width)
+    count, regions = find_runs(bits, height, width, runs)
     paint(runs, count, labels)
-    return regions
+    return labels, runs.table[1 : regions + 1, : SUM_Y + 1].copy()
 
 
 def components(mask: NDArray[np.uint8]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
@@ -46,9 +48,7 @@ def components(mask: NDArray[np.uint8]) -> tuple[NDArray[np.int32], NDArray[np.i
     Returns labels (h, w) int32, 0 outside, and a table (n, 7) int64, row k - 1 for label k, with
     the columns AREA, LEFT, RIGHT, TOP, BOTTOM, SUM_X, SUM_Y in pixels.
     """
-    height, width = mask.shape
-    labels = np.zeros((height, width), dtype=np.int32)
-    bits = np.empty(height * words_of(width), dtype=np.uint64)
-    runs = empty_runs(height, width)
-    regions = _components(np.ascontiguousarray(mask, dtype=np.uint8), bits, runs, labels)
-    return labels, runs.table[1 : regions + 1, :7]
+    found: tuple[NDArray[np.int32], NDArray[np.int64]] = _components(
+        np.ascontiguousarray(mask, dtype=np.uint8)
+    )
+    return found

@@ -13,7 +13,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.bits import words_of
-from naod.perception.memory import LINE, Memory, int32s, int64s, uint8s, uint32s, uint64s, zeroed
+from naod.perception.memory import (
+    LINE,
+    Memory,
+    int32s,
+    int64s,
+    parts_of,
+    uint8s,
+    uint32s,
+    uint64s,
+    zeroed,
+)
 
 BACKGROUND, BORDER, OPEN, OBJECT = 0x00, 0x11, 0x20, 0x22
 """Codes of cells. The lower digit is 0, 1 or 2 for background, beyond the border and object while
@@ -129,7 +139,8 @@ def clear(field: Field) -> None:
 
 def empty_field(height: int, width: int) -> Field:
     """All the memory that fields of this size ever need."""
-    field: Field = field_in(zeroed(bytes_of_field(height, width)), 0, height, width)[0]
+    memory = zeroed(bytes_of_field(height, width))
+    field = Field(*parts_of(memory, field_in(memory, 0, height, width)[0]))
     clear(field)
     return field
 

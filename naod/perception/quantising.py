@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from naod.perception.memory import LINE, Memory, uint64s
+from naod.perception.memory import LINE, Memory, fetch, uint8s, uint64s
 
 Y_BITS, C_BITS = 5, 6
 CELLS = 1 << (Y_BITS + 2 * C_BITS)
@@ -20,20 +20,29 @@ CELLS = 1 << (Y_BITS + 2 * C_BITS)
 ANY_BLOCK, WORDS_4 = 0, 4
 """Kinds of blocks: of any size; 4 x 4, one word wide. Others of 1, 2, 8 and 16 are their side."""
 
+_ROWS_AHEAD = 8
+"""Memory is asked for so many rows before it is read. Four rows read side by side are more than a
+processor looks ahead for by itself."""
+
+_WORDS_A_LINE = LINE // 8
+
 _LANES = np.uint64(0x00FF00FF00FF00FF)
 _LANE = np.uint64(0xFFFF)
 _U0, _U1, _U3, _U8, _U16, _U32 = (np.uint64(n) for n in (0, 1, 3, 8, 16, 32))
 _U_SHIFT, _Y_SHIFT = np.uint64(C_BITS), np.uint64(2 * C_BITS)
+# of a block of 4 x 4: a compiler that knows them shifts several sums at once
+_Y_CUT_4, _C_CUT_4 = np.uint64(4 + 8 - Y_BITS), np.uint64(3 + 8 - C_BITS)
 
 
 class Picture(NamedTuple):
-    """A picture's bytes (H, 2 W) and the same as words, read-only; scratch for a row of blocks.
+    """A picture's bytes and the same as words, read-only; scratch for a row of blocks.
 
     `words` is (H, W / 4), or (0, 0) where blocks are of ANY_BLOCK.
     """
 
-    raw: NDArray[np.uint8]
+    raw: NDArray[np.uint8]  # (H, 2 W)
     words: NDArray[np.uint64]
+    flat: NDArray[np.uint64]  # (H W / 4,), or (0,)
     sums: NDArray[np.uint64]  # (2, 2 W): of each byte, or the even and odd lanes of each word
 
 
@@ -41,12 +50,14 @@ class Picture(NamedTuple):
 def picture_in(
     memory: Memory, start: int, raw: NDArray[np.uint8], kind: int
 ) -> tuple[Picture, int]:
-    """A picture with scratch cut from memory, and where that is free again."""
-    height, across = raw.shape
-    words = raw.reshape(-1)[: 0 if kind == ANY_BLOCK else raw.size].view(np.uint64)
+    """A picture (H, W, 2) with scratch cut from memory, and where that is free again."""
+    height, across = raw.shape[0], 2 * raw.shape[1]
+    lines, _ = uint8s(raw, 0, raw.size)
+    flat, _ = uint64s(raw, 0, 0 if kind == ANY_BLOCK else raw.size // 8)
     shape = (0, 0) if kind == ANY_BLOCK else (height, across // 8)
     sums, at = uint64s(memory, start, 2 * across)
-    return Picture(raw, words.reshape(shape), sums.reshape((2, across))), at
+    lines = lines.reshape((height, across))
+    return Picture(lines, flat.reshape(shape), flat, sums.reshape((2, across))), at
 
 
 def bytes_of_picture(width: int) -> int:
@@ -55,27 +66,28 @@ def bytes_of_picture(width: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _by_words_of_four(
-    sums: NDArray[np.uint64],
-    last: NDArray[np.uint64],
-    y_cut: np.uint64,
-    c_cut: np.uint64,
-    out: NDArray[np.uint32],
-) -> None:
-    """One word of each of four rows is one block: sums of three of them, and the last one.
+def _fetch_rows(picture: Picture, row: int) -> None:
+    """Ask for four rows of a picture that are read next; beyond its end for nothing."""
+    across = picture.words.shape[1]
+    for k in range(row * across, min((row + 4) * across, picture.flat.size), _WORDS_A_LINE):
+        fetch(picture.flat, k)
 
-    Row after row, as the memory lies: reading four rows at a time keeps waiting for it.
-    """
+
+@njit(cache=True, nogil=True)
+def _by_words_of_four(words: NDArray[np.uint64], top: int, out: NDArray[np.uint32]) -> None:
+    """One word of each of four rows is one block."""
     # not unpacked: rows got that way are not known to be contiguous, and loops over them are slow
-    even, odd = sums[0], sums[1]
+    first, second, third, fourth = words[top], words[top + 1], words[top + 2], words[top + 3]
     for j in range(out.size):
-        y = even[j] + (last[j] & _LANES)
-        uv = odd[j] + ((last[j] >> _U8) & _LANES)
+        a, b, c, d = first[j], second[j], third[j], fourth[j]
+        y = (a & _LANES) + (b & _LANES) + (c & _LANES) + (d & _LANES)
+        uv = ((a >> _U8) & _LANES) + ((b >> _U8) & _LANES)
+        uv += ((c >> _U8) & _LANES) + ((d >> _U8) & _LANES)
         y += y >> _U32
         y += y >> _U16
         uv += uv >> _U32
-        u, v = (uv & _LANE) >> c_cut, ((uv >> _U16) & _LANE) >> c_cut
-        out[j] = (((y & _LANE) >> y_cut) << _Y_SHIFT) | (u << _U_SHIFT) | v
+        u, v = (uv & _LANE) >> _C_CUT_4, ((uv >> _U16) & _LANE) >> _C_CUT_4
+        out[j] = (((y & _LANE) >> _Y_CUT_4) << _Y_SHIFT) | (u << _U_SHIFT) | v
 
 
 @njit(cache=True, nogil=True)
@@ -178,6 +190,25 @@ def _power(block: int) -> int:
 
 
 @njit(cache=True, nogil=True)
+def _y_cut(power: int) -> int:
+    """Bits to drop of a sum over a block of 2^p x 2^p, which has 2^2p samples of Y."""
+    return 2 * power + 8 - Y_BITS
+
+
+@njit(cache=True, nogil=True)
+def _c_cut(power: int) -> int:
+    """The same for U and for V, of which there are half as many, but one of a single pixel."""
+    return int(max(2 * power - 1, 0)) + 8 - C_BITS
+
+
+@njit(cache=True, nogil=True)
+def cells_of_fours(picture: Picture, row: int, out: NDArray[np.uint32]) -> None:
+    """As `cells_of_row` of WORDS_4."""
+    _fetch_rows(picture, 4 * row + _ROWS_AHEAD)
+    _by_words_of_four(picture.words, 4 * row, out)
+
+
+@njit(cache=True, nogil=True)
 def cells_of_row(
     picture: Picture, kind: int, block: int, row: int, out: NDArray[np.uint32]
 ) -> None:
@@ -185,14 +216,11 @@ def cells_of_row(
     if kind == ANY_BLOCK:
         _by_bytes(picture.raw, row, block, picture.sums[0], out)
         return
-    # a block of 2^p x 2^p has 2^2p samples of Y and half as many of U and V, a single pixel as many
-    power = _power(block)
-    y_cut = np.uint64(2 * power + 8 - Y_BITS)
-    c_cut = np.uint64(max(2 * power - 1, 0) + 8 - C_BITS)
     if kind == WORDS_4:
-        _add_words(picture.words, row * block, 3, picture.sums[0], picture.sums[1])
-        _by_words_of_four(picture.sums, picture.words[row * block + 3], y_cut, c_cut, out)
+        cells_of_fours(picture, row, out)
         return
+    power = _power(block)
+    y_cut, c_cut = np.uint64(_y_cut(power)), np.uint64(_c_cut(power))
     _add_words(picture.words, row * block, block, picture.sums[0], picture.sums[1])
     if block < 4:
         _by_parts_of_a_word(picture.sums, block, y_cut, c_cut, out)

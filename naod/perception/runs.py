@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.bits import WORD, trailing_zeros, words_of
-from naod.perception.memory import LINE, Memory, int32s, int64s, zeroed
+from naod.perception.memory import LINE, Memory, int32s, int64s
 
 AREA, LEFT, RIGHT, TOP, BOTTOM, SUM_X, SUM_Y, EVIDENCE = range(8)
 """Columns of the table of regions; EVIDENCE: steps by which its pixels are likelier object."""
@@ -52,10 +52,18 @@ def bytes_of_runs(height: int, width: int) -> int:
     return 24 * (height + 1) * (width + 1) + 16 * LINE
 
 
-def empty_runs(height: int, width: int) -> Runs:
-    """All the memory that masks of this size ever need."""
-    runs: Runs = runs_in(zeroed(bytes_of_runs(height, width)), 0, height, width)[0]
-    return runs
+@njit(cache=True, nogil=True)
+def fresh_runs(height: int, width: int) -> Runs:
+    """Memory of their own for the runs of any mask of this size."""
+    most = height * ((width + 1) // 2) + 1
+    regions = ((height + 1) // 2) * ((width + 1) // 2) + 1
+    return Runs(
+        np.empty(most, dtype=np.int32),
+        np.empty(most, dtype=np.int32),
+        np.empty(most, dtype=np.int32),
+        np.empty(most, dtype=np.int32),
+        np.empty((regions, 8), dtype=np.int64),
+    )
 
 
 @njit(cache=True, nogil=True)

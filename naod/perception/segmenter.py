@@ -13,7 +13,8 @@ from naod.perception.icm import descend, label_by_singletons
 from naod.perception.lookup import Lookup
 from naod.perception.quantising import kind_of
 from naod.perception.reduction import Reduction
-from naod.perception.sight import Sight, Sights, choose_in_mask, measure, scratch, see
+from naod.perception.seeing import choose_in_mask, measure, scratch, see
+from naod.perception.sight import Sight, Sights
 
 _LEVELS = np.dtype(np.uint8)
 
@@ -61,10 +62,25 @@ class Segmenter:
         self.singletons = Singletons(model, settings.background_energy, settings.light_std)
         self._lookup = Lookup(self.singletons, self.beta_steps)
         height, width = self.reduction.height, self.reduction.width
+        self._shape = (size[1], size[0], 2)
+        self._background = height * width * settings.background_energy
         self._energies = np.zeros(settings.sweeps_max + 1, dtype=np.int64)
         self._kind = kind_of(size, self.reduction.block)
         self._memory = scratch(height, width, size[0])
         self._sights = Sights(height, width, settings.pixels_min)
+        self._exact = settings.optimiser == "exact"
+        # looked up once: where caches are cold, every attribute on the way costs time
+        self._fixed = (
+            self._kind,
+            self.reduction.block,
+            self._lookup.votes,
+            self._lookup.values,
+            self._memory,
+            height,
+            width,
+            self.beta_steps,
+            settings.pixels_min,
+        )
 
     @property
     def beta_steps(self) -> int:
@@ -92,11 +108,10 @@ class Segmenter:
         """
         raw = self._raw(yuyv)
         sight = self._sights.take()
-        exact = self.settings.optimiser == "exact"
-        energy, iterations, settled = (self._minimise if exact else self._descend)(raw, sight)
+        energy, iterations, settled = (self._minimise if self._exact else self._descend)(raw, sight)
         return Segmentation(
             mask=sight.mask,
-            energy=sight.mask.size * self.settings.background_energy + energy / STEPS,
+            energy=self._background + energy / STEPS,
             iterations=iterations,
             scale=float(self.reduction.block),
             size=self.reduction.size,
@@ -105,37 +120,24 @@ class Segmenter:
         )
 
     def _raw(self, yuyv: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        width, height = self.reduction.size
-        if yuyv.shape != (height, width, 2) or yuyv.dtype != _LEVELS:
+        if yuyv.shape != self._shape or yuyv.dtype != _LEVELS:
+            height, width, _ = self._shape
             raise ValueError(f"expected a uint8 YUYV picture {width}x{height}, got {yuyv.shape}")
-        raw: NDArray[np.uint8] = np.ascontiguousarray(yuyv).reshape(height, 2 * width)
+        raw = yuyv.view() if yuyv.flags.c_contiguous else np.ascontiguousarray(yuyv)
         # whether a picture may be written to is part of its type: one type, one compilation
-        raw.flags.writeable = False
+        raw.setflags(write=False)
         return raw
 
     def _minimise(self, raw: NDArray[np.uint8], sight: Sight) -> tuple[int, int, bool]:
-        reduction = self.reduction
-        energy, waves, *found = see(
-            raw,
-            self._kind,
-            reduction.block,
-            self._lookup.votes,
-            self._lookup.values,
-            self._memory,
-            sight.memory,
-            reduction.height,
-            reduction.width,
-            self.beta_steps,
-            sight.pixels_min,
-        )
-        sight.pixels, sight.points, sight.cut, sight.run_count, sight.regions = found
+        found = see(raw, sight.memory, *self._fixed)
+        energy, waves, sight.pixels, sight.points, sight.cut, sight.run_count, sight.regions = found
         sight.values = self._lookup.values
         return energy, waves, True
 
     def _descend(self, raw: NDArray[np.uint8], sight: Sight) -> tuple[int, int, bool]:
         block, (height, width) = self.reduction.block, sight.mask.shape
         values, mask = self._lookup.values, sight.mask
-        measure(raw, self._kind, block, values, self._memory, sight.memory, height, width)
+        measure(raw, sight.memory, self._kind, block, values, self._memory, height, width)
         # they are there: nothing is left to look up
         sight.values = None
         differences = sight.differences

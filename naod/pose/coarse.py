@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
-from naod.geometry.transforms import transform
+from naod.geometry.transforms import closed
 from naod.perception.blob import Blob
 from naod.pose.around import lonely_share, places_around, visible_area
 from naod.pose.contour import CYLINDER, VERTICES, figures, seen_outline
@@ -69,24 +70,18 @@ def coarse_fit(
     near: where the object is expected; tried first, and alone where it explains the outline. It is
     a fit to pixels of a mask: good for choosing between blobs and for knowing where to look.
     """
-    points = outline_points(blob)
-    if len(points) < POINTS_MIN:
-        return None
     poses, found = np.empty((READINGS, 3, 4)), np.empty(FOUND)
-    hinted, hint = near is not None, np.zeros((3, 4))
-    if near is not None:
-        hint[:] = near.T_camera_object[:3]
+    hint = _NOWHERE if near is None else np.ascontiguousarray(near.T_camera_object[:3])
     box = np.ascontiguousarray(blob.corners_px, dtype=np.float64)
-    boundary = np.ascontiguousarray(blob.boundary_px[:: max(1, len(blob.boundary_px) // MOST)])
     count = _fit(
-        *figures(shape), points, boundary, box, blob.grain_px, _sides(blob), lens_of(camera),
-        hint, hinted, poses, found,
+        *figures(shape), _boundary(blob), box, blob.grain_px, _sides(blob.clipped), lens_of(camera),
+        hint, near is not None, poses, found,
     )  # fmt: skip
     if count == 0:
         return None
-    readings = [transform(pose[:, :3], pose[:, 3]) for pose in poses[:count]]
-    cost, support, area, gaps = (float(value) for value in found)
-    return CoarseFit(readings[0], cost, support, area, gaps, readings[1] if count > 1 else None)
+    other = closed(poses[1]) if count > 1 else None
+    cost, support, area, gaps = found.tolist()
+    return CoarseFit(closed(poses[0]), cost, support, area, gaps, other)
 
 
 def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
@@ -94,20 +89,30 @@ def outline_points(blob: Blob, most: int = POINTS) -> NDArray[np.float64]:
 
     The shapes looked for are convex; dents and holes are not theirs.
     """
-    boundary = blob.boundary_px
-    if len(boundary) < POINTS_MIN:
+    return np.asarray(_outline(_boundary(blob), blob.grain_px, most))
+
+
+def _boundary(blob: Blob) -> NDArray[np.float64]:
+    return np.ascontiguousarray(blob.boundary_px, dtype=np.float64)
+
+
+@njit(cache=True, nogil=True)
+def _outline(boundary: NDArray[np.float64], grain_px: float, most: int) -> NDArray[np.float64]:
+    if boundary.shape[0] < POINTS_MIN:
         return boundary
-    every = max(1, len(boundary) // (2 * most))
-    return np.asarray(convex_points(boundary, every, 1.5 * blob.grain_px, most))
+    every = max(1, boundary.shape[0] // (2 * most))
+    return convex_points(boundary, every, 1.5 * grain_px, most)
 
 
 COST, SUPPORT, AREA, GAPS = range(4)
 FOUND = 4
 _SIDES = ("left", "top", "right", "bottom")
+_NOWHERE: NDArray[np.float64] = np.zeros((3, 4))
 
 
-def _sides(blob: Blob) -> NDArray[np.bool_]:
-    return np.array([side in blob.clipped for side in _SIDES])
+@lru_cache(maxsize=16)
+def _sides(clipped: tuple[str, ...]) -> NDArray[np.bool_]:
+    return np.array([side in clipped for side in _SIDES])
 
 
 @njit(cache=True, nogil=True)
@@ -196,7 +201,6 @@ def _fit(
     kind: int,
     half_width: float,
     half_height: float,
-    points_px: NDArray[np.float64],
     boundary: NDArray[np.float64],
     box: NDArray[np.float64],
     grain_px: float,
@@ -207,7 +211,12 @@ def _fit(
     poses: NDArray[np.float64],
     found: NDArray[np.float64],
 ) -> int:
-    """Readings of an outline, the best first; returns how many."""
+    """Readings of a blob's boundary, the best first; returns how many."""
+    points_px = _outline(boundary, grain_px, POINTS)
+    if points_px.shape[0] < POINTS_MIN:
+        return 0
+    if boundary.shape[0] >= 2 * MOST:
+        boundary = boundary[:: boundary.shape[0] // MOST].copy()
     grain, points = grain_px / focal(lens), np.empty(points_px.shape)
     guesses = np.empty((GUESSES_MAX, 3, 4))
     from_pixels(lens, points_px, points)

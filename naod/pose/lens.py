@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -15,8 +16,12 @@ ROUNDS = 40
 """Of undoing a distortion; a moderate one takes five."""
 
 
+@lru_cache(maxsize=16)
 def lens_of(camera: PinholeCamera) -> NDArray[np.float64]:
-    """(11,) fx, fy, cx, cy, k1, k2, p1, p2, k3, width, height, as the kernels take them."""
+    """(11,) fx, fy, cx, cy, k1, k2, p1, p2, k3, width, height, as the kernels take them.
+
+    One array for all who ask: not to be written to.
+    """
     c = camera
     bent = c.distortion or (0.0, 0.0, 0.0, 0.0, 0.0)
     return np.array((c.fx, c.fy, c.cx, c.cy, *bent, c.width, c.height), dtype=np.float64)

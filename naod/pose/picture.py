@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.camera import PinholeCamera
-from naod.geometry.transforms import transform
+from naod.geometry.transforms import closed
 from naod.pose.coarse import CoarseFit
 from naod.pose.contour import VERTICES, figures, pixels_of, take_corners
 from naod.pose.fit import Fit
@@ -88,9 +88,9 @@ def see(
     points, residuals, jacobian, edges, weights, groups, trust, spreads, offsets = measured
     if not len(points):
         return None
-    T = transform(poses[0][:, :3], poses[0][:, 3])
+    T = closed(poses[0])
     fit = Fit(T, residuals, jacobian, edges, weights, groups, spreads, offsets)
-    other = transform(poses[1][:, :3], poses[1][:, 3]) if math.isfinite(gap) else None
+    other = closed(poses[1]) if math.isfinite(gap) else None
     reading = Reading(fit, points, trust, support)
     return Seen(reading, total, corners, blur_of(rise_px), seen, other, gap)
 

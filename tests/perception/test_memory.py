@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import resource
 import tracemalloc
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import pytest
+from numba import njit
 
 from naod.config import SegmentationConfig
 from naod.perception.blob import find_blob
+from naod.perception.box import box_in, bytes_of_box, bytes_of_found, found_in
 from naod.perception.colour_model import ColourModel
+from naod.perception.memory import fetch, parts_of, zeroed
+from naod.perception.optimum_field import bytes_of_field, field_in
+from naod.perception.runs import bytes_of_runs, runs_in
 from naod.perception.segmenter import Segmenter
 
 SIZE = (320, 240)
@@ -18,6 +24,56 @@ MODEL = ColourModel(
     mean=(90.0, 110.0, 200.0),
     covariance=((200.0, 0.0, 0.0), (0.0, 60.0, 0.0), (0.0, 0.0, 60.0)),
 )
+
+
+Cut = Callable[[np.ndarray, int, int], tuple[Iterable[np.ndarray], int]]
+
+
+def _box_in(memory: np.ndarray, height: int, width: int) -> tuple[Iterable[np.ndarray], int]:
+    found = found_in(zeroed(bytes_of_found(height, width)), 0, height, width)[0]
+    box, end = box_in(memory, 0, found, height, width)
+    return box[len(found) :], end
+
+
+CUTS: dict[str, tuple[Callable[[int, int], int], Cut]] = {
+    "field": (bytes_of_field, lambda memory, *size: field_in(memory, 0, *size)),
+    "found": (bytes_of_found, lambda memory, *size: found_in(memory, 0, *size)),
+    "box": (bytes_of_box, _box_in),
+    "runs": (bytes_of_runs, lambda memory, *size: runs_in(memory, 0, *size)),
+}
+
+
+@pytest.mark.parametrize("size", [(1, 1), (2, 3), (5, 64), (7, 63), (64, 5), (120, 160), (37, 129)])
+@pytest.mark.parametrize("what", CUTS)
+def test_what_is_cut_lies_within_the_memory(what: str, size: tuple[int, int]) -> None:
+    bytes_of, cut = CUTS[what]
+    memory = zeroed(bytes_of(*size))
+    arrays, end = cut(memory, *size)
+    assert end <= memory.size
+    for array in arrays:
+        first = array.ctypes.data - memory.ctypes.data
+        assert 0 <= first <= first + array.nbytes <= end
+
+
+def test_views_for_python_hold_the_memory() -> None:
+    memory = zeroed(bytes_of_runs(4, 6))
+    runs = tuple(parts_of(memory, runs_in(memory, 0, 4, 6)[0]))
+    assert all(view.base is memory.base for view in runs)
+    runs[0][:] = 7
+    assert (memory.view(np.int32)[: runs[0].size] == 7).all()
+
+
+@pytest.mark.parametrize("count", [1, 8, 1000])
+def test_fetching_changes_nothing_even_beyond_the_end(count: int) -> None:
+    words = np.arange(count, dtype=np.uint64)
+
+    @njit
+    def fetch_all(words: np.ndarray) -> None:
+        for k in range(words.size + 4096):
+            fetch(words, k)
+
+    fetch_all(words)
+    assert (words == np.arange(count)).all()
 
 
 def pictures(count: int, size: tuple[int, int] = SIZE) -> list[np.ndarray]:
