@@ -133,7 +133,7 @@ class SegmentationConfig(_Section, frozen=True):
     settled: NotNegative = 1e-3
     sweeps_max: Count = 50
     pixels_min: Count = 12
-    presence_min: Fraction = 0.55
+    presence_min: Fraction = 0.52
 
 
 class GazeConfig(_Section, frozen=True):

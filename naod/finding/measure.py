@@ -9,13 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.finding.hue import CLIP, Own, look_at_middle
-from naod.finding.hull import (
-    Points,
-    four_sides,
-    hull_of_rows,
-    row_ends,
-    smallest_box,
-)
+from naod.finding.hull import Points, four_sides, hull_of_rows, row_ends, smallest_box
 from naod.finding.silhouette import (
     CUT_ACROSS,
     CUT_ALONG,
@@ -23,6 +17,7 @@ from naod.finding.silhouette import (
     MISFIT,
     OUTLINE_MAX,
     SCALE,
+    SHOWN,
     TURN_AWAY,
     cut_outline,
     cylinder_outline,
@@ -33,14 +28,16 @@ from naod.perception.energy import STEPS
 
 NO_SHAPE, CYLINDER, RECTANGLE = range(3)
 
-COLOUR, RING, PIXELS, FILL, GAP, ASPECT, TURN, ON_SIDE, METRE, X, Y, CORE, HUE, TONE = range(14)
-MEASURES = 14
+COLOUR, RING, PIXELS, FILL, GAP, ASPECT, TURN, ON_SIDE = range(8)
+METRE, X, Y, CORE, HUE, TONE, SHARE = range(8, 15)
+MEASURES = 15
 """Columns: mean log-likelihood ratio (nat, positive = object) of the group's pixels inside the
 outline, and of all around it; mask pixels inside; share of those that are the group's; mean
 distance of hull and outline in tolerances; misfit of proportions in tolerances; a rectangle's turn
 out of the picture's plane (rad); 1 where it lies; mask pixels per metre; middle of the box; ratio
 (nat) that a quarter of the pixels exceed, which blur leaves alone as long as it is short; how
-far its hue and tone are from the object's in tolerances, -1 and 0 where there is no picture."""
+far its hue and tone are from the object's in tolerances, -1 and 0 where there is no picture; share
+of the object that the picture's border leaves, at most."""
 
 USUAL_PIXELS = 160 * 120
 """Pixels are counted as of a mask of this size: what matters is their share of the picture."""
@@ -174,8 +171,8 @@ def _shaped(
 ) -> int:
     """The shape's outline for a hull; the hull's own where there is no shape, or it is cut off."""
     kind, half_width, half_height = shape
-    found = np.zeros(4)
-    count = 0
+    found, count = np.zeros(5), 0
+    found[SHOWN] = 1.0
     if kind != NO_SHAPE and cut:
         round_ = kind == CYLINDER
         cut_outline(box, round_, 2.0 * half_width, 2.0 * half_height, cut, found)
@@ -194,7 +191,8 @@ def _shaped(
     unsure = ASPECT_PX + ASPECT_BLUR * blur
     allowed = math.hypot(unsure / across, unsure / along) + ASPECT_SHARE
     out[ASPECT] = found[MISFIT] / allowed
-    out[TURN], out[ON_SIDE], out[METRE] = found[TURN_AWAY], found[LYING], found[SCALE]
+    out[TURN], out[ON_SIDE] = found[TURN_AWAY], found[LYING]
+    out[METRE], out[SHARE] = found[SCALE], found[SHOWN]
     if count == 0:
         for k in range(corners):
             outline[k] = hull[k]

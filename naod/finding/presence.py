@@ -1,8 +1,8 @@
 """How likely a group of regions is the object: logistic regression on a few measures.
 
 The weights are in `weights.toml` and come from `python -m naod.finding.calibration`. Beside what
-was fitted stand three terms that pictures of one kind of room could not teach: how far away the
-object can be, that it rarely lies, and where it was last seen.
+was fitted stand terms that pictures of one kind of room could not teach: how far away the object
+can be, that it rarely lies, how much of it must be in the picture, and where it was last seen.
 """
 
 from __future__ import annotations
@@ -28,9 +28,11 @@ from naod.finding.measure import (
     ON_SIDE,
     PIXELS,
     RING,
+    SHARE,
     TONE,
     TURN,
 )
+from naod.finding.silhouette import CUT_ACROSS
 
 Floats = NDArray[np.float64]
 
@@ -57,6 +59,11 @@ more than this: an object may stand before a wall of nearly its colour."""
 
 HUE_FREE, TONE_FREE, WASHED_FREE = 0.5, 0.5, 1.0
 """Tolerances that nobody minds: blur and a ribbon wash a colour out, little makes it more of it."""
+
+SHARE_ENOUGH, GLIMPSE_COST = 0.5, 3.0
+"""A glimpse at the picture's left or right border may be of anything, and the head turns there and
+sees more. So much of the object is enough; what lacks of that costs so much log-odds, times its
+share."""
 
 PALE_FROM, PALE_MAX = 5.0, 4.0
 """Nat: a core surer than that is of the object's very colour; what lacks counts squared, for other
@@ -165,13 +172,14 @@ def distance_m(measures: Floats, focal_px: float) -> Floats:
 
 
 @njit(cache=True, nogil=True)
-def plausibility(measures: Floats, focal_px: float) -> Floats:
-    """Log-odds (m,), never positive: where no object is looked for, and that it rarely lies."""
+def plausibility(measures: Floats, cuts: NDArray[np.int64], focal_px: float) -> Floats:
+    """Log-odds (m,), never positive: where no object is looked for, how it lies, and glimpses."""
     out = np.empty(measures.shape[0])
     for k in range(out.size):
         distance = focal_px / max(measures[k, METRE], 1e-9)
         beyond = max(math.log(NEAREST_M / distance), math.log(distance / FARTHEST_M), 0.0) / BEYOND
-        out[k] = -0.5 * beyond**2 - LYING_COST * measures[k, ON_SIDE]
+        lack = max(SHARE_ENOUGH - measures[k, SHARE], 0.0) if cuts[k] & CUT_ACROSS else 0.0
+        out[k] = -0.5 * beyond**2 - LYING_COST * measures[k, ON_SIDE] - GLIMPSE_COST * lack
     return out
 
 

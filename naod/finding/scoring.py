@@ -54,5 +54,5 @@ def score_groups(
         measures[k, COLOUR] = min(measures[k, COLOUR] * CLIP / peak, CLIP)
         measures[k, CORE] = min(measures[k, CORE] * CLIP / peak, CLIP)
         measures[k, RING] = min(measures[k, RING], around_max)
-    offsets = plausibility(measures, focal_px) if known else np.zeros(groups.size)
+    offsets = plausibility(measures, cuts, focal_px) if known else np.zeros(groups.size)
     return chosen, groups, measures, cuts, log_odds(measures, cuts, weights), offsets

@@ -25,9 +25,10 @@ ASIDE = 0.7
 ABOVE = 0.15
 """Logarithm by which looking from above may lower an upright rectangle."""
 
-MISFIT, TURN_AWAY, SCALE, LYING = range(4)
+MISFIT, TURN_AWAY, SCALE, LYING, SHOWN = range(5)
 """Columns of a silhouette: logarithm by which its proportions cannot be had from any side, how far
-a rectangle is turned out of the picture's plane (rad), mask pixels per metre, 1 where it lies."""
+a rectangle is turned out of the picture's plane (rad), mask pixels per metre, 1 where it lies, and
+at most how much of it the picture's border leaves to be seen, of its area."""
 
 CUT_ACROSS, CUT_ALONG = 1, 2
 """Bits of `cut`: the picture's left or right border, its upper or lower one, ends the region."""
@@ -139,3 +140,4 @@ def cut_outline(
         found[MISFIT] = max(math.log(across / along) - ABOVE, 0.0)
     elif cut == CUT_ALONG:
         found[MISFIT] = max(math.log(along / across) - ASIDE, 0.0)
+    found[SHOWN] = min(across * along / found[SCALE] ** 2, 1.0)

@@ -98,12 +98,20 @@ def test_too_large_for_any_distance_is_not_the_object():
     assert found(mask, tiny) is None
 
 
-@pytest.mark.parametrize("x", [-0.34, 0.34])
-def test_cut_off_by_the_border_it_is_still_found(x):
+@pytest.mark.parametrize("x", [-0.32, 0.32])
+def test_half_cut_off_by_the_border_it_is_still_found(x):
     mask = draw(empty(), CAN, standing(x, 0.05, 0.6))
     assert mask[:, [0, -1]].any()
     best = found(mask)
     assert best.blob.clipped == (("left",) if x < 0.0 else ("right",))
+
+
+@pytest.mark.parametrize("x", [-0.34, 0.34])
+def test_a_glimpse_is_found_where_it_is_expected(x):
+    T = standing(x, 0.05, 0.6)
+    mask = draw(empty(), CAN, T)
+    assert found(mask) is None
+    assert found(mask, prior=expected_at(T)) is not None
 
 
 def test_of_two_alike_the_expected_one():
