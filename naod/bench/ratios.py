@@ -67,10 +67,17 @@ def _contestants(
         peer.learn(taught.shown, taught.region)
     return {
         MEMCPY: lambda n: np.copyto(copy, yuyvs[n % len(yuyvs)]),
+        **ours(taught, yuyvs),
+        **{name: _peer(peer, frames) for name, peer in others.items()},
+    }
+
+
+def ours(taught: Taken, yuyvs: list[NDArray[np.uint8]]) -> dict[str, Work]:
+    """From one of the frames to its box, to the object and to its pose."""
+    return {
         BOX: _box(taught, yuyvs),
         OBJECT: _object(taught, yuyvs),
         POSE: _pose(taught, yuyvs),
-        **{name: _peer(peer, frames) for name, peer in others.items()},
     }
 
 

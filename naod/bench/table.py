@@ -20,6 +20,7 @@ BENCHES: dict[str, str] = {
     "poses": "naod.bench.poses",
     "backdrops": "naod.bench.backdrops",
     "lola": "naod.bench.lola",
+    "portable": "naod.bench.portable",
 }
 
 QUICK = ("perception",)
