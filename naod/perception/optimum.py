@@ -11,9 +11,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.bits import WORD, ones, unpack, words_of
+from naod.perception.memory import Memory
 from naod.perception.optimum_bracket import bracket, take_decided, take_row
 from naod.perception.optimum_cut import cut
-from naod.perception.optimum_field import WAVES, Field, empty_field, votes_of
+from naod.perception.optimum_field import WAVES, Field, empty_field, field_in, votes_of
 
 BETA_MAX = 1 << 27
 """Twelve times as much, the most that a cell of the cut can hold, is still an int32."""
@@ -49,13 +50,14 @@ def solve(field: Field, values: NDArray[np.int32], places: NDArray[np.uint32], b
 
 @njit(cache=True, nogil=True)
 def _minimise(
-    field: Field,
+    memory: Memory,
     differences: NDArray[np.int32],
     places: NDArray[np.uint32],
     beta: int,
     labels: NDArray[np.uint8],
 ) -> int:
     height, width = labels.shape
+    field, _ = field_in(memory, 0, height, width)
     for i in range(height):
         votes_of(differences[i], np.int32(beta), field.votes)
         take_row(field.votes, field.eights, field.plane_bytes, i, height, width)
@@ -77,18 +79,19 @@ class Optimum:
 
     def __init__(self, height: int, width: int) -> None:
         self.shape = (height, width)
-        self._field = empty_field(height, width)
+        self._memory, field = empty_field(height, width)
+        self._counts = field.counts
         self._places = np.arange(height * width, dtype=np.uint32).reshape(height, width)
 
     @property
     def counts(self) -> NDArray[np.int64]:
         """Work done by the last call, (5,): CANDIDATES, UNDECIDED, WAVES, VISITS, LIFTS."""
-        return self._field.counts
+        return self._counts
 
     @property
     def waves(self) -> int:
         """Waves of the cut in the last call; 0 when the bounds met everywhere."""
-        return int(self._field.counts[WAVES])
+        return int(self._counts[WAVES])
 
     def minimise(self, differences: NDArray[np.int32], beta: int, labels: NDArray[np.uint8]) -> int:
         """Write the minimum for (h, w) int32 into (h, w) uint8, 1 = object.
@@ -106,4 +109,4 @@ class Optimum:
             raise ValueError("expected contiguous fields")
         if not 0 <= beta <= BETA_MAX:
             raise ValueError(f"beta {beta}: 0 to {BETA_MAX} steps")
-        return int(_minimise(self._field, differences, self._places, beta, labels))
+        return int(_minimise(self._memory, differences, self._places, beta, labels))

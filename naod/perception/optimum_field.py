@@ -137,12 +137,12 @@ def clear(field: Field) -> None:
     field.codes[:] = BORDER
 
 
-def empty_field(height: int, width: int) -> Field:
-    """All the memory that fields of this size ever need."""
+def empty_field(height: int, width: int) -> tuple[Memory, Field]:
+    """All the memory that fields of this size ever need, and a field in it."""
     memory = zeroed(bytes_of_field(height, width))
     field = Field(*parts_of(memory, field_in(memory, 0, height, width)[0]))
     clear(field)
-    return field
+    return memory, field
 
 
 @njit(cache=True, nogil=True)
