@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from naod.finding.groups import NO_COLOURS
 from naod.perception.blob import evidence
-from naod.perception.components import AREA, BOTTOM, LEFT, RIGHT, TOP, components, paint
+from naod.perception.components import AREA, BOTTOM, LEFT, RIGHT, TOP, components
 from naod.perception.energy import STEPS
-from naod.perception.runs import EVIDENCE, Runs
+from naod.perception.runs import EVIDENCE
 from naod.perception.segmenter import Segmentation
 from naod.perception.sight import Sight
 
@@ -76,16 +76,8 @@ def cores_of(regions: Regions) -> Regions:
 
 
 def _seen(sight: Sight) -> Regions:
-    labels = np.zeros(sight.mask.shape, dtype=np.int32)
-    _paint(sight.runs, sight.run_count, labels)
-    # the segmenter's memory is used again, what is made of a picture stays
-    table = sight.runs.table[1 : sight.regions + 1].copy()
+    labels, table = sight.labelled()
     return Regions(labels, table, table[:, EVIDENCE].astype(np.float64), sight.differences)
-
-
-@njit(cache=True, nogil=True)
-def _paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
-    paint(runs, count, labels)
 
 
 @njit(cache=True, nogil=True)

@@ -15,19 +15,12 @@ from naod.perception.runs import (
     SUM_X,
     SUM_Y,
     TOP,
-    Runs,
     find_runs,
     fresh_runs,
+    paint,
 )
 
 __all__ = ["AREA", "BOTTOM", "LEFT", "RIGHT", "SUM_X", "SUM_Y", "TOP", "components"]
-
-
-@njit(cache=True, nogil=True)
-def paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
-    """Write the regions' names where their runs are."""
-    for run in range(count):
-        labels[runs.rows[run], runs.starts[run] : runs.ends[run] + 1] = runs.names[run]
 
 
 @njit(cache=True, nogil=True)

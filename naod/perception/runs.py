@@ -177,3 +177,10 @@ def find_runs(bits: NDArray[np.uint64], height: int, width: int, runs: Runs) -> 
         _join_above(runs, above if last == i - 1 else first, first, count)
         above, last = first, i
     return count, _measure(runs, count)
+
+
+@njit(cache=True, nogil=True)
+def paint(runs: Runs, count: int, labels: NDArray[np.int32]) -> None:
+    """Write the regions' names into labels (h, w) where their runs are."""
+    for run in range(count):
+        labels[runs.rows[run], runs.starts[run] : runs.ends[run] + 1] = runs.names[run]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from naod.perception.box import Found, bytes_of_found, found_in
 from naod.perception.memory import LINE, Memory, int32s, parts_of, uint8s, uint32s, zeroed
-from naod.perception.runs import Runs, bytes_of_runs, runs_in
+from naod.perception.runs import Runs, bytes_of_runs, paint, runs_in
 
 
 @njit(cache=True, nogil=True)
@@ -36,6 +36,22 @@ def fill(
         here, out = places[i], differences[i]
         for j in range(here.size):
             out[j] = values[here[j]]
+
+
+@njit(cache=True, nogil=True)
+def _labelled(
+    values: NDArray[np.int32], memory: Memory, height: int, width: int, count: int, regions: int
+) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Labels and table of the regions; differences are filled in if `values` has any."""
+    _, differences, places, _, runs = result_in(memory, height, width)
+    if values.size:
+        fill(values, places, differences)
+    labels = np.zeros((height, width), dtype=np.int32)
+    paint(runs, count, labels)
+    return labels, runs.table[1 : regions + 1].copy()
+
+
+_FILLED: NDArray[np.int32] = np.zeros(0, dtype=np.int32)
 
 
 class Sight:
@@ -68,6 +84,18 @@ class Sight:
             fill(self.values, self._places, self._differences)
             self.values = None
         return self._differences
+
+    def labelled(self) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+        """Labels (h, w) of the mask's regions, and their table (n, 8), which are nobody's memory.
+
+        The differences, which whoever asks for these wants too, are looked up along with them.
+        """
+        values = _FILLED if self.values is None else self.values
+        self.values = None
+        found: tuple[NDArray[np.int32], NDArray[np.int64]] = _labelled(
+            values, self.memory, *self.mask.shape, self.run_count, self.regions
+        )
+        return found
 
     def holders(self) -> int:
         """References to this, to the memory by views of it, and to what is handed out as it is."""
