@@ -11,8 +11,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
-from types import TracebackType
-from typing import Self
+from contextlib import closing
 
 import cv2
 import msgspec
@@ -45,15 +44,8 @@ class Timer:
             env=dict(variables),
         )
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """End the process."""
         self._process.kill()
         self._process.communicate()
 
@@ -82,7 +74,10 @@ def run(
     settings = settings or WalkSettings()
     with tempfile.TemporaryDirectory() as cache:
         there = environment(cache, CPU) if portable is None else portable
-        with Timer(TUNED, settings, os.environ) as here, Timer(PORTABLE, settings, there) as robot:
+        with (
+            closing(Timer(TUNED, settings, os.environ)) as here,
+            closing(Timer(PORTABLE, settings, there)) as robot,
+        ):
             progress("compiling")
             for timer in (here, robot):
                 timer.medians()

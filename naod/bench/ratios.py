@@ -13,7 +13,7 @@ from naod.bench.peers.camshift import CamShift
 from naod.bench.peers.hsv import HsvThreshold
 from naod.bench.peers.peer import Peer
 from naod.bench.table import Report
-from naod.bench.timing import Timing, interleaved
+from naod.bench.timing import interleaved
 from naod.config import SegmentationConfig
 from naod.finding.find import find_object
 from naod.finding.hue import Colours
@@ -43,19 +43,14 @@ def run(sequences: Sequence[Taken], progress: Progress) -> Report:
     yuyvs = [frame.yuyv for frame in frames]
     rounds = max(len(frames), FRAMES_MIN)
     timings = interleaved(_contestants(seen[0], frames, yuyvs), BOX, rounds)
-    slow = interleaved(
-        {BOX: _box(seen[0], yuyvs), **_grabcut(seen[0], frames)}, BOX, GRABCUT_ROUNDS
+    timings += interleaved(_grabcut(seen[0], frames), GRABCUT, GRABCUT_ROUNDS)
+    copy_ms, box_ms = (next(t.median_ms for t in timings if t.name == n) for n in (MEMCPY, BOX))
+    rows = tuple(
+        (t.name, t.median_ms, t.median_ms / copy_ms, t.median_ms / box_ms) for t in timings
     )
-    timings += [timing for timing in slow if timing.name == GRABCUT]
-    copy_ms = next(t.median_ms for t in timings if t.name == MEMCPY)
-    rows = tuple(_row(timing, copy_ms) for timing in timings)
     notes = (f"medians of {rounds} frames, GrabCut's of {GRABCUT_ROUNDS}; one thread",)
     columns = ("work", "ms", "times memcpy", "times naod's box")
     return Report("ratios", columns, rows, notes)
-
-
-def _row(timing: Timing, copy_ms: float) -> tuple[str, float, float, float]:
-    return (timing.name, timing.median_ms, timing.median_ms / copy_ms, timing.ratio)
 
 
 def _contestants(

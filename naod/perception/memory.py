@@ -2,7 +2,7 @@
 
 Every array that Python hands over costs time, a microsecond each when caches are cold. What is cut
 does not count as holding the memory: counting costs time too, for every row that is taken of an
-array. Python gets views that do (`parts_of`).
+array. Python gets views that do (`views_of`).
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def fetch(_context, words, _k):  # type: ignore[no-untyped-def]
     return types.void(words, types.intp), code
 
 
-def parts_of(memory: Memory, arrays: Iterable[NDArray[Any]]) -> Iterator[NDArray[Any]]:
+def views_of(memory: Memory, arrays: Iterable[NDArray[Any]]) -> Iterator[NDArray[Any]]:
     """Arrays that compiled code cut from memory, as views that hold the memory itself.
 
     Whoever holds such a view, or a view of it, can be told from the memory's references.

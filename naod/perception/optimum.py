@@ -11,10 +11,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.bits import WORD, ones, unpack, words_of
-from naod.perception.memory import Memory
+from naod.perception.memory import Memory, views_of, zeroed
 from naod.perception.optimum_bracket import bracket, take_decided, take_row
 from naod.perception.optimum_cut import cut
-from naod.perception.optimum_field import WAVES, Field, empty_field, field_in, votes_of
+from naod.perception.optimum_field import WAVES, Field, bytes_of_field, clear, field_in, votes_of
 
 BETA_MAX = 1 << 27
 """Twelve times as much, the most that a cell of the cut can hold, is still an int32."""
@@ -79,8 +79,10 @@ class Optimum:
 
     def __init__(self, height: int, width: int) -> None:
         self.shape = (height, width)
-        self._memory, field = empty_field(height, width)
-        self._counts = field.counts
+        self._memory = zeroed(bytes_of_field(height, width))
+        field, _ = field_in(self._memory, 0, height, width)
+        clear(field)
+        (self._counts,) = views_of(self._memory, [field.counts])
         self._places = np.arange(height * width, dtype=np.uint32).reshape(height, width)
 
     @property

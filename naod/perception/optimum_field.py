@@ -13,17 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.bits import words_of
-from naod.perception.memory import (
-    LINE,
-    Memory,
-    int32s,
-    int64s,
-    parts_of,
-    uint8s,
-    uint32s,
-    uint64s,
-    zeroed,
-)
+from naod.perception.memory import LINE, Memory, int32s, int64s, uint8s, uint32s, uint64s
 
 BACKGROUND, BORDER, OPEN, OBJECT = 0x00, 0x11, 0x20, 0x22
 """Codes of cells. The lower digit is 0, 1 or 2 for background, beyond the border and object while
@@ -135,14 +125,6 @@ def bytes_of_field(height: int, width: int) -> int:
 def clear(field: Field) -> None:
     """Put the border up in fresh memory."""
     field.codes[:] = BORDER
-
-
-def empty_field(height: int, width: int) -> tuple[Memory, Field]:
-    """All the memory that fields of this size ever need, and a field in it."""
-    memory = zeroed(bytes_of_field(height, width))
-    field = Field(*parts_of(memory, field_in(memory, 0, height, width)[0]))
-    clear(field)
-    return memory, field
 
 
 @njit(cache=True, nogil=True)

@@ -190,18 +190,6 @@ def _power(block: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _y_cut(power: int) -> int:
-    """Bits to drop of a sum over a block of 2^p x 2^p, which has 2^2p samples of Y."""
-    return 2 * power + 8 - Y_BITS
-
-
-@njit(cache=True, nogil=True)
-def _c_cut(power: int) -> int:
-    """The same for U and for V, of which there are half as many, but one of a single pixel."""
-    return int(max(2 * power - 1, 0)) + 8 - C_BITS
-
-
-@njit(cache=True, nogil=True)
 def cells_of_fours(picture: Picture, row: int, out: NDArray[np.uint32]) -> None:
     """As `cells_of_row` of WORDS_4."""
     _fetch_rows(picture, 4 * row + _ROWS_AHEAD)
@@ -219,8 +207,10 @@ def cells_of_row(
     if kind == WORDS_4:
         cells_of_fours(picture, row, out)
         return
+    # a block of 2^p x 2^p has 2^2p samples of Y and half as many of U and V, a single pixel as many
     power = _power(block)
-    y_cut, c_cut = np.uint64(_y_cut(power)), np.uint64(_c_cut(power))
+    y_cut = np.uint64(2 * power + 8 - Y_BITS)
+    c_cut = np.uint64(max(2 * power - 1, 0) + 8 - C_BITS)
     _add_words(picture.words, row * block, block, picture.sums[0], picture.sums[1])
     if block < 4:
         _by_parts_of_a_word(picture.sums, block, y_cut, c_cut, out)

@@ -35,10 +35,16 @@ class Runs(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
+def _at_most(height: int, width: int) -> tuple[int, int]:
+    """Runs and lines of the table that a mask of this size can have."""
+    across = (width + 1) // 2
+    return height * across + 1, ((height + 1) // 2) * across + 1
+
+
+@njit(cache=True, nogil=True)
 def runs_in(memory: Memory, start: int, height: int, width: int) -> tuple[Runs, int]:
     """Room for the runs of any mask of this size, and where memory is free again."""
-    most = height * ((width + 1) // 2) + 1
-    regions = ((height + 1) // 2) * ((width + 1) // 2) + 1
+    most, regions = _at_most(height, width)
     rows, at = int32s(memory, start, most)
     starts, at = int32s(memory, at, most)
     ends, at = int32s(memory, at, most)
@@ -55,8 +61,7 @@ def bytes_of_runs(height: int, width: int) -> int:
 @njit(cache=True, nogil=True)
 def fresh_runs(height: int, width: int) -> Runs:
     """Memory of their own for the runs of any mask of this size."""
-    most = height * ((width + 1) // 2) + 1
-    regions = ((height + 1) // 2) * ((width + 1) // 2) + 1
+    most, regions = _at_most(height, width)
     return Runs(
         np.empty(most, dtype=np.int32),
         np.empty(most, dtype=np.int32),

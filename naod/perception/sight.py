@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.perception.box import Found, bytes_of_found, found_in
-from naod.perception.memory import LINE, Memory, int32s, parts_of, uint8s, uint32s, zeroed
+from naod.perception.memory import LINE, Memory, int32s, uint8s, uint32s, views_of, zeroed
 from naod.perception.runs import Runs, bytes_of_runs, paint, runs_in
 
 
@@ -40,18 +40,12 @@ def fill(
 
 @njit(cache=True, nogil=True)
 def _labelled(
-    values: NDArray[np.int32], memory: Memory, height: int, width: int, count: int, regions: int
+    memory: Memory, height: int, width: int, count: int, regions: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Labels and table of the regions; differences are filled in if `values` has any."""
-    _, differences, places, _, runs = result_in(memory, height, width)
-    if values.size:
-        fill(values, places, differences)
+    runs = result_in(memory, height, width)[-1]
     labels = np.zeros((height, width), dtype=np.int32)
     paint(runs, count, labels)
     return labels, runs.table[1 : regions + 1].copy()
-
-
-_FILLED: NDArray[np.int32] = np.zeros(0, dtype=np.int32)
 
 
 class Sight:
@@ -67,11 +61,11 @@ class Sight:
         size = 9 * height * width + bytes_of_found(height, width) + bytes_of_runs(height, width)
         self.memory = zeroed(size + 3 * LINE)
         mask, differences, places, found, runs = result_in(self.memory, height, width)
-        views = parts_of(self.memory, (mask, differences, places))
+        views = views_of(self.memory, (mask, differences, places))
         self.mask, self._differences, self._places = views
-        self.found = Found(*parts_of(self.memory, found))
+        self.found = Found(*views_of(self.memory, found))
         self._corners, self._centre = self.found.corners, self.found.centre
-        self.runs = Runs(*parts_of(self.memory, runs))
+        self.runs = Runs(*views_of(self.memory, runs))
         self._whole = self.memory.base
         self.values: NDArray[np.int32] | None = None
         self.pixels_min = pixels_min
@@ -86,14 +80,9 @@ class Sight:
         return self._differences
 
     def labelled(self) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-        """Labels (h, w) of the mask's regions, and their table (n, 8), which are nobody's memory.
-
-        The differences, which whoever asks for these wants too, are looked up along with them.
-        """
-        values = _FILLED if self.values is None else self.values
-        self.values = None
+        """Labels (h, w) of the mask's regions, and their table (n, 8), in memory of their own."""
         found: tuple[NDArray[np.int32], NDArray[np.int64]] = _labelled(
-            values, self.memory, *self.mask.shape, self.run_count, self.regions
+            self.memory, *self.mask.shape, self.run_count, self.regions
         )
         return found
 

@@ -15,7 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from naod.geometry.linear import solve_symmetric
-from naod.geometry.transforms import transform
+from naod.geometry.transforms import closed
 from naod.pose.contour import CYLINDER, DEPTH_MIN_M, VERTICES, figures, is_arc, outline, project
 from naod.pose.foot import foot, nearest, tangent
 from naod.pose.objects import ObjectShape
@@ -276,7 +276,7 @@ def fit_outline(
         offsets,
     )
     return Fit(
-        transform(T[:, :3], T[:, 3]),
+        closed(T),
         residuals * focal_px,
         jacobian * focal_px,
         edges,

@@ -1,6 +1,7 @@
 """The benchmark of portable kernels, tiny: both processes with the same ones."""
 
 import os
+from contextlib import closing
 
 import pytest
 
@@ -26,7 +27,7 @@ def test_every_work_is_timed_in_both_processes():
 def test_a_process_that_ended_is_named():
     nowhere = {"PATH": os.defpath, "PYTHONPATH": "", "PYTHONHOME": "/nowhere"}
     with (
-        Timer("of nobody", TINY, nowhere) as timer,
+        closing(Timer("of nobody", TINY, nowhere)) as timer,
         pytest.raises(NaodError, match="of nobody has ended"),
     ):
         timer.medians()

@@ -14,10 +14,13 @@ from naod.config import SegmentationConfig
 from naod.perception.blob import find_blob
 from naod.perception.box import box_in, bytes_of_box, bytes_of_found, found_in
 from naod.perception.colour_model import ColourModel
-from naod.perception.memory import fetch, parts_of, zeroed
+from naod.perception.memory import fetch, views_of, zeroed
 from naod.perception.optimum_field import bytes_of_field, field_in
+from naod.perception.quantising import WORDS_4, picture_in
 from naod.perception.runs import bytes_of_runs, runs_in
+from naod.perception.seeing import scratch
 from naod.perception.segmenter import Segmenter
+from naod.perception.sight import Sight, result_in
 
 SIZE = (320, 240)
 MODEL = ColourModel(
@@ -55,9 +58,24 @@ def test_what_is_cut_lies_within_the_memory(what: str, size: tuple[int, int]) ->
         assert 0 <= first <= first + array.nbytes <= end
 
 
+@pytest.mark.parametrize("size", [(1, 1), (5, 17), (120, 160), (37, 129)])
+def test_all_that_a_picture_takes_lies_within_its_memory(size: tuple[int, int]) -> None:
+    height, width = size
+    sight, memory = Sight(height, width, 12), scratch(height, width, 4 * width)
+    *parts, found, runs = result_in(sight.memory, height, width)
+    raw = np.zeros((4 * height, 4 * width, 2), dtype=np.uint8)
+    raw.setflags(write=False)
+    end = box_in(memory, field_in(memory, 0, *size)[1], found, *size)[1]
+    end = picture_in(memory, end, raw, WORDS_4)[1]
+    assert end <= memory.size
+    for array in (*parts, *found, *runs):
+        first = array.ctypes.data - sight.memory.ctypes.data
+        assert 0 <= first <= first + array.nbytes <= sight.memory.size
+
+
 def test_views_for_python_hold_the_memory() -> None:
     memory = zeroed(bytes_of_runs(4, 6))
-    runs = tuple(parts_of(memory, runs_in(memory, 0, 4, 6)[0]))
+    runs = tuple(views_of(memory, runs_in(memory, 0, 4, 6)[0]))
     assert all(view.base is memory.base for view in runs)
     runs[0][:] = 7
     assert (memory.view(np.int32)[: runs[0].size] == 7).all()
